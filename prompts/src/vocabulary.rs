@@ -210,6 +210,7 @@ fn relations() -> Vec<(Value, String)> {
         row(&Relation::Leaving, "comes out of the room or elevator"),
         row(&Relation::Staying, "stays inside it as the robot enters"),
         row(&Relation::Abreast, "walks beside the robot"),
+        row(&Relation::Aside, "stands beside its way, never in it; not met"),
     ]
 }
 
@@ -277,6 +278,7 @@ fn predicates() -> Vec<Test> {
         ),
         setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it"),
         setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door"),
+        setup(&Predicate::StaysAside { human }, "stands beside the way, never in it"),
         setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door"),
         setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door"),
         setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near"),

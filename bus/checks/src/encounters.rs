@@ -47,7 +47,8 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> 
         let path = paths.humans.get(&human.id);
         // Whoever stands where the robot starts is left, not met.
         let left = path.is_some_and(|nodes| nodes.len() == 1 && nodes.first() == paths.robot.first());
-        let met = human.relation == Relation::Staying || human.relation == Relation::Static && left;
+        let met =
+            matches!(human.relation, Relation::Staying | Relation::Aside) || human.relation == Relation::Static && left;
         if !met && path.is_some() && paths.encounter_of(human.id).is_none() {
             let shared = path.map(|nodes| shared(nodes, &paths.robot)).unwrap_or_default();
             let message = format!("has no encounter; nodes they share with the robot: {}", list(shared));
@@ -64,6 +65,10 @@ fn meets(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: 
     let on_robot = paths.robot.contains(&encounter.node);
     let on_human = own.contains(&encounter.node);
     // People of an elevator or room are met at its door, although they start behind it.
+    // A bystander stands beside the way and meets nobody: the node is the one that they watch.
+    if on_robot && human.relation == Relation::Aside {
+        return None;
+    }
     let at_door = matches!(human.relation, Relation::Staying | Relation::Leaving)
         && own.first().is_some_and(|start| near_inside(&encounter.node, start, location));
     if on_robot && (on_human || at_door) {

@@ -84,6 +84,8 @@ fn belong(one: AgentId, other: AgentId, proposal: &Proposal) -> bool {
                 || indoors(a.relation) && indoors(b.relation)
                 || along(a.relation) && along(b.relation)
                 || stands(a.relation) && stands(b.relation)
+                || a.relation == Relation::Aside
+                || b.relation == Relation::Aside
         }
         (None, Some(human)) | (Some(human), None) => {
             // A standing group with which the robot starts is placed round it.

@@ -185,6 +185,8 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::GesturesTo { .. }
         | Predicate::TurnsBack { .. }
         | Predicate::GoesTo { .. }
+        | Predicate::StaysAside { .. }
+        | Predicate::MakesRoom { .. }
         | Predicate::RobotLeavesGroup { .. } => Vec::new(),
         Predicate::ChangesPace { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
     }

@@ -40,6 +40,9 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
         Relation::Static => (nodes.len() != 1 && !sets_off(human)).then(|| {
             format!("their path has {} nodes; who stands has one, the encounter {}", nodes.len(), list(meeting))
         }),
+        Relation::Aside => {
+            (nodes.len() != 1).then(|| format!("their path has {} nodes; who stands aside has one", nodes.len()))
+        }
         Relation::Staying => {
             let start = nodes.first()?;
             if nodes.len() != 1 {
@@ -116,7 +119,8 @@ fn same_way(relation: Relation, nodes: &[NodeId], robot: &[NodeId], meeting: Opt
         | Relation::Static
         | Relation::Leaving
         | Relation::Staying
-        | Relation::Abreast => None,
+        | Relation::Abreast
+        | Relation::Aside => None,
     }
 }
 

@@ -33,7 +33,7 @@ pub fn check_paths(paths: &Paths, proposal: &Proposal, location: &Location) -> V
         // Who meets somebody twice comes back for it.
         let again = |human: HumanId| paths.encounters_of(human).count() > 1;
         let twice = match agent {
-            AgentId::Robot => paths.humans.keys().copied().any(again),
+            AgentId::Robot => paths.comes_back() || paths.humans.keys().copied().any(again),
             AgentId::Human(human) => again(human),
         };
         if !twice {
@@ -133,7 +133,7 @@ fn lengths(paths: &Paths, proposal: &Proposal, graph: &SceneGraph) -> Vec<Fault>
         let Some(nodes) = paths.humans.get(&human.id) else { continue };
         let least_m = match human.relation {
             // One node is right for those who stand; the relation check says so if it is not.
-            Relation::Static | Relation::Staying => continue,
+            Relation::Static | Relation::Staying | Relation::Aside => continue,
             Relation::Leaving => LEAVER_M,
             Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Crossing | Relation::Abreast => HUMAN_M,
         };

@@ -281,6 +281,18 @@ pub enum Predicate {
         /// The speed from then on, m/s.
         mps: f64,
     },
+    /// The human stands beside the robot's way all the time: they go 0.5 m at most, unless an act of theirs leads them, the robot
+    /// comes within 8 m of them, and is never nearer than 0.9 m.
+    StaysAside {
+        /// Who.
+        human: HumanId,
+    },
+    /// The human makes room and closes up again: gives way as the robot passes, as [`Predicate::GivesWay`] says, and is back within
+    /// 0.7 m of where they stood within 10 s after it has passed.
+    MakesRoom {
+        /// Who.
+        human: HumanId,
+    },
     /// The human starts inside the door and crosses its line outward exactly once.
     Leaves {
         /// Who.
@@ -464,6 +476,8 @@ impl Predicate {
             | Self::TurnsBack { human }
             | Self::GoesTo { human, .. }
             | Self::ChangesPace { human, .. }
+            | Self::StaysAside { human }
+            | Self::MakesRoom { human }
             | Self::Leaves { human, .. }
             | Self::StaysInside { human, .. }
             | Self::Enters { human, .. }
@@ -539,6 +553,8 @@ impl Predicate {
             | Self::TurnsBack { .. }
             | Self::GoesTo { .. }
             | Self::ChangesPace { .. }
+            | Self::StaysAside { .. }
+            | Self::MakesRoom { .. }
             | Self::Gestures { .. }
             | Self::Leaves { .. }
             | Self::StaysInside { .. }

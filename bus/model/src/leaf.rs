@@ -31,6 +31,8 @@ impl Action {
             Self::TurnBack => &["turnback"],
             Self::GoTo { .. } => &["gotoplace"],
             Self::ChangePace(_) => &["changepace"],
+            Self::MakeRoom => &["makeroom"],
+            Self::ApproachTo(_) => &["comeclose"],
         }
     }
 
@@ -47,6 +49,7 @@ impl Action {
             "ApproachRobot" => Self::Approach,
             "StandStill" => Self::StandStill,
             "TurnBack" => Self::TurnBack,
+            "MakeRoom" => Self::MakeRoom,
             _ => return None,
         })
     }

@@ -60,6 +60,18 @@ impl Paths {
         }
     }
 
+    /// Whether the robot's way leads there and back again.
+    #[must_use]
+    pub fn comes_back(&self) -> bool {
+        self.robot.len() > 2 && self.robot.first() == self.robot.last()
+    }
+
+    /// The node where the robot's errand leads: its last one, or where a way there and back turns.
+    #[must_use]
+    pub fn robot_goal(&self) -> Option<&NodeId> {
+        if self.comes_back() { self.robot.get(self.robot.len() / 2) } else { self.robot.last() }
+    }
+
     /// The node where the robot meets a human, for the first time if it meets it several times.
     #[must_use]
     pub fn encounter_of(&self, human: HumanId) -> Option<&NodeId> {

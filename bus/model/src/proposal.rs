@@ -29,6 +29,8 @@ pub enum Relation {
     Staying,
     /// Walks beside the robot.
     Abreast,
+    /// Stands beside the robot's way, and never in it (path of one node, no encounter).
+    Aside,
 }
 
 impl Relation {
@@ -44,6 +46,7 @@ impl Relation {
             Self::Leaving => "leaving",
             Self::Staying => "staying",
             Self::Abreast => "abreast",
+            Self::Aside => "aside",
         }
     }
 }
@@ -61,6 +64,8 @@ pub enum Side {
 impl Side {
     /// Somebody who stands or walks on a side does so as far beside the middle of the robot's way, as it is planned, m.
     pub const BESIDE_M: f64 = 0.55;
+    /// A bystander stands as far beside the robot's way, as it is planned, at least, m.
+    pub const ASIDE_M: f64 = 1.2;
 
     /// Name, as written in files.
     #[must_use]
@@ -126,6 +131,8 @@ pub enum WayPart {
     Via,
     /// What it keeps out of.
     Avoid,
+    /// Where it began: it leads to its goal and back again.
+    Back,
 }
 
 impl WayPart {
@@ -137,6 +144,7 @@ impl WayPart {
             Self::Goal => "goal",
             Self::Via => "via",
             Self::Avoid => "avoid",
+            Self::Back => "return",
         }
     }
 
@@ -148,6 +156,7 @@ impl WayPart {
             Self::Goal => "ends at",
             Self::Via => "leads past",
             Self::Avoid => "keeps out of",
+            Self::Back => "comes back to",
         }
     }
 
@@ -159,6 +168,7 @@ impl WayPart {
             Self::Goal => "does not end at",
             Self::Via => "does not lead past",
             Self::Avoid => "does not keep out of",
+            Self::Back => "does not come back to",
         }
     }
 }

@@ -138,6 +138,9 @@ pub struct RobotRequest {
     /// Places that its way keeps out of.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub avoid: Vec<PlaceWord>,
+    /// Whether it comes back from its goal to where it began.
+    #[serde(rename = "return", skip_serializing_if = "std::ops::Not::not")]
+    pub returns: bool,
     /// What it does on its way.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub does: Vec<RobotStep>,
@@ -154,6 +157,7 @@ impl Default for RobotRequest {
             goal: None,
             via: None,
             avoid: Vec::new(),
+            returns: false,
             does: Vec::new(),
         }
     }

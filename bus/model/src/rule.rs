@@ -79,13 +79,25 @@ pub enum Action {
     },
     /// Walks on along the path, from then on at this speed, m/s.
     ChangePace(f64),
+    /// Steps out of the robot's way, and goes back to where they stood once it has passed.
+    MakeRoom,
+    /// Goes up to the robot as near as this, m, and keeps so near while it goes away.
+    ApproachTo(f64),
 }
 
 impl Action {
     /// Whether it is one of those that only steps of a form have.
     #[must_use]
     pub const fn is_of_steps(&self) -> bool {
-        matches!(self, Self::LookAt(_) | Self::TurnBack | Self::GoTo { .. } | Self::ChangePace(_))
+        matches!(
+            self,
+            Self::LookAt(_)
+                | Self::TurnBack
+                | Self::GoTo { .. }
+                | Self::ChangePace(_)
+                | Self::MakeRoom
+                | Self::ApproachTo(_)
+        )
     }
 
     /// The action in words: `follows the robot`.
@@ -105,6 +117,8 @@ impl Action {
             Self::TurnBack => "turns and walks back".to_owned(),
             Self::GoTo { place, .. } => format!("goes to the {place}"),
             Self::ChangePace(mps) => format!("walks on at {mps} m/s"),
+            Self::MakeRoom => "makes room for the robot and comes back".to_owned(),
+            Self::ApproachTo(m) => format!("comes up to the robot, as near as {m} m"),
         }
     }
 
@@ -125,6 +139,8 @@ impl Action {
             Self::TurnBack => "turn and walk back".to_owned(),
             Self::GoTo { place, .. } => format!("go to the {place}"),
             Self::ChangePace(mps) => format!("walk on at {mps} m/s"),
+            Self::MakeRoom => "make room for the robot and come back".to_owned(),
+            Self::ApproachTo(m) => format!("come up to the robot, as near as {m} m"),
         }
     }
 }

@@ -62,6 +62,7 @@ const fn relation_words(relation: Relation) -> &'static str {
         Relation::Leaving => "comes out as the robot arrives",
         Relation::Staying => "stays inside",
         Relation::Abreast => "walks beside the robot",
+        Relation::Aside => "stands aside",
     }
 }
 

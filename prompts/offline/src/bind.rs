@@ -303,11 +303,12 @@ pub(crate) fn people_deed(
     // `follows the facilitator rather than the robot`
     let rather =
         |robot: usize| (1..=3).filter_map(|back| robot.checked_sub(back)).any(|k| matches!(text(k), "than" | "not"));
-    let object = if act == Act::Follow && found.robots.iter().all(|robot| *robot < at || rather(*robot)) {
-        object
-    } else {
-        None
-    };
+    let object =
+        if matches!(act, Act::Follow | Act::Look) && found.robots.iter().all(|robot| *robot < at || rather(*robot)) {
+            object
+        } else {
+            None
+        };
     let startled = (at..=to).any(|i| {
         stretch
             .words

@@ -42,6 +42,10 @@ const FOLLOWS_S: f64 = 8.0;
 /// Paces of whoever slows down and of whoever speeds up, m/s.
 const SLOW_MPS: f64 = 0.6;
 const FAST_MPS: f64 = 1.7;
+/// Whoever comes very close to the robot comes as near as this, m.
+const CLOSE_M: f64 = 0.8;
+/// A group that makes room waits so long for the robot to pass, s.
+const OPEN_S: f64 = 12.0;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
 
@@ -59,6 +63,8 @@ pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
         Act::TurnBack => (Action::TurnBack, Trigger::RobotVisible(4.0), None, true),
         Act::SlowDown => (Action::ChangePace(SLOW_MPS), Trigger::RobotVisible(5.0), None, true),
         Act::SpeedUp => (Action::ChangePace(FAST_MPS), Trigger::RobotVisible(5.0), None, true),
+        Act::ComeClose => (Action::ApproachTo(CLOSE_M), Trigger::RobotVisible(5.0), Some(8.0), true),
+        Act::OpenUp => (Action::MakeRoom, Trigger::RobotVisible(3.5), Some(OPEN_S), true),
         Act::Toward
         | Act::Overtake
         | Act::Behind
@@ -76,7 +82,8 @@ pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
         | Act::Lead
         | Act::Pass
         | Act::GoOn
-        | Act::Walk => return None,
+        | Act::Walk
+        | Act::Aside => return None,
     })
 }
 
@@ -90,6 +97,7 @@ pub(crate) fn words(act: Act, around: &Around) -> String {
         Act::GiveWay => "gives way".into(),
         Act::Block => "blocks the robot".into(),
         Act::Look if around.startled => "startled".into(),
+        Act::Look if around.object.is_some() => around.object.map_or_else(String::new, |id| format!("looks at {id}")),
         Act::Look => "looks at the robot".into(),
         Act::Approach => "comes up to the robot".into(),
         Act::Toward => "comes towards the robot".into(),
@@ -115,6 +123,9 @@ pub(crate) fn words(act: Act, around: &Around) -> String {
         Act::TurnBack => "turns back".into(),
         Act::SlowDown => "slows down".into(),
         Act::SpeedUp => "speeds up".into(),
+        Act::Aside => "stands beside the robot's way".into(),
+        Act::ComeClose => "comes very close to the robot".into(),
+        Act::OpenUp => "makes room and closes up again".into(),
     }
 }
 
@@ -356,6 +367,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     }
     let action = match (action, around.object) {
         (Action::FollowRobot, Some(id)) => Action::FollowHuman(id),
+        (Action::LookAtRobot, Some(id)) => Action::LookAt(id),
         (other, _) => other,
     };
     let when = match (&around.trigger, &usual) {

@@ -184,7 +184,10 @@ pub(crate) fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]
         | Act::Lead
         | Act::TurnBack
         | Act::SlowDown
-        | Act::SpeedUp => true,
+        | Act::SpeedUp
+        | Act::Aside
+        | Act::ComeClose
+        | Act::OpenUp => true,
     };
     let kept = found.deeds.iter().copied().filter(keep).collect();
     found.deeds = kept;

@@ -25,6 +25,9 @@ const CORNER_M: f64 = 5.0;
 /// Largest difference of arrival where ways cross and no card says, s.
 const GAP_S: f64 = 4.0;
 
+/// Somebody who comes as near to the robot as a distance is at most so much farther away, m.
+const CLOSE_M: f64 = 0.15;
+
 /// So many follow the robot within the usual distance, and each one more so much farther behind it, m.
 const FEW_FOLLOW: usize = 3;
 const QUEUE_M: f64 = 0.5;
@@ -305,6 +308,8 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         Action::FollowHuman(leader) => Some(follows(id, (*leader).into())),
         Action::RunAway => Some(Predicate::RunsAway { human: id, by_m: 1.0 }),
         Action::GiveWay => Some(Predicate::GivesWay { human: id }),
+        Action::MakeRoom => Some(Predicate::MakesRoom { human: id }),
+        Action::ApproachTo(near_m) => Some(Predicate::Meets { human: id, within_m: near_m + CLOSE_M }),
         Action::Block => Some(Predicate::Blocks { human: id, for_s: lasts(2.5) }),
         Action::LookAtRobot => Some(Predicate::Looks { human: id, for_s: lasts(2.0) }),
         Action::Approach => Some(Predicate::Meets { human: id, within_m: 2.0 }),
@@ -384,7 +389,7 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
         let early = human
             .rules
             .iter()
-            .filter(|rule| !matches!(rule.act, Action::FollowRobot | Action::Approach))
+            .filter(|rule| !matches!(rule.act, Action::FollowRobot | Action::Approach | Action::ApproachTo(_)))
             .flat_map(|rule| &rule.when);
         // Where only one gets through, making room is going back.
         let back = place == PlaceClass::NarrowPassage && does(&Action::GiveWay);
@@ -455,6 +460,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
             format!("{id} stays inside"),
             Predicate::StaysInside { human: id, door: String::new() },
         ),
+        Relation::Aside => {
+            list.setup(true, source, format!("{id} stands beside the robot's way"), Predicate::StaysAside { human: id })
+        }
         Relation::Abreast => list.setup(
             true,
             source,

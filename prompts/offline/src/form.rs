@@ -167,6 +167,7 @@ fn stands(relation: Relation, start: Option<PlaceClass>) -> String {
     let act = match relation {
         Relation::Leaving => return format!("leaves the {from}"),
         Relation::Staying => return format!("stays in the {from}"),
+        Relation::Aside => return "stands beside the robot's way".to_owned(),
         Relation::Frontal => Act::Toward,
         Relation::Behind => Act::Behind,
         Relation::Ahead => Act::Ahead,

@@ -43,6 +43,12 @@ pub(crate) enum Act {
     /// Walks at another pace from then on.
     SlowDown,
     SpeedUp,
+    /// Stands beside the robot's way, and never in it.
+    Aside,
+    /// Comes up to the robot nearer than people do.
+    ComeClose,
+    /// Makes room as a group does, and closes up again.
+    OpenUp,
 }
 
 /// What somebody notices, as the text says it.

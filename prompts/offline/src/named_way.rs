@@ -37,6 +37,10 @@ pub(crate) fn rest(task: &Task, request: &Request, location: &Location, reading:
         let nodes = if by_class { socrates_maps::place::nodes_of(location, bound.class) } else { bound.nodes };
         add(reading, (part, place.to_string(), nodes), format!("robot.{} = \"{place}\"", part.name()));
     }
+    let back = task.back.as_ref().filter(|_| task.comes_home).cloned();
+    if let Some(quote) = robot.returns.then(|| "robot.return = true".to_owned()).or(back) {
+        add(reading, (WayPart::Back, "where it began".to_owned(), Vec::new()), quote);
+    }
     for end in &task.vias {
         add(reading, (WayPart::Via, end.name.clone(), end.nodes.clone()), end.name.clone());
     }
@@ -49,7 +53,7 @@ pub(crate) fn rest(task: &Task, request: &Request, location: &Location, reading:
 
 fn add(reading: &mut Reading, (part, name, nodes): (WayPart, String, Vec<NodeId>), quote: String) {
     let same = |fact: &Fact| matches!(&fact.kind, FactKind::RobotAt { part: own, .. } if *own == part && part != WayPart::Avoid);
-    if nodes.is_empty() || reading.facts.iter().any(same) {
+    if nodes.is_empty() && part != WayPart::Back || reading.facts.iter().any(same) {
         return;
     }
     let id = format!("f{}", reading.facts.len() + 1);
@@ -96,13 +100,14 @@ pub(crate) fn avoided_by(quote: &str, location: &Location) -> Vec<(String, Vec<N
 pub(crate) fn kept(predicate: &Predicate, paths: &Paths) -> bool {
     let Predicate::RobotWay { part, nodes } = predicate else { return true };
     let own = |node: &NodeId| nodes.contains(node);
-    let (first, last) = (paths.robot.first().is_some_and(own), paths.robot.last().is_some_and(own));
+    let (first, last) = (paths.robot.first().is_some_and(own), paths.robot_goal().is_some_and(own));
     let any = paths.robot.iter().any(own);
     match part {
         WayPart::Start => first,
         WayPart::Goal => last,
         WayPart::Via => any && !first && !last,
         WayPart::Avoid => !any,
+        WayPart::Back => paths.comes_back(),
     }
 }
 
@@ -114,7 +119,7 @@ pub(crate) fn playable(proposal: &mut Proposal, question: &Question) {
             .iter()
             .any(|clause| matches!(clause.predicate, Predicate::RobotWay { part: own, .. } if own == part))
     };
-    let parts = [WayPart::Via, WayPart::Avoid, WayPart::Start, WayPart::Goal];
+    let parts = [WayPart::Via, WayPart::Avoid, WayPart::Back, WayPart::Start, WayPart::Goal];
     if !question.request.form.is_empty() || !parts.iter().any(|part| asks(proposal, *part)) {
         return;
     }

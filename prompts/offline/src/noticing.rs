@@ -15,7 +15,8 @@ const fn step_m(relation: Relation) -> f64 {
         | Relation::Static
         | Relation::Leaving
         | Relation::Staying
-        | Relation::Abreast => 1.7,
+        | Relation::Abreast
+        | Relation::Aside => 1.7,
     }
 }
 
@@ -35,6 +36,8 @@ const fn reach_m(act: &Action, gesture: Option<Gesture>) -> Option<(f64, [f64; 2
         | Action::FollowHuman(_)
         | Action::LookAt(_)
         | Action::TurnBack
+        | Action::MakeRoom
+        | Action::ApproachTo(_)
         | Action::GoTo { .. }
         | Action::ChangePace(_) => None,
     }

@@ -179,9 +179,10 @@ fn proposed(
         | Relation::Ahead
         | Relation::Crossing
         | Relation::Static
-        | Relation::Abreast => None,
+        | Relation::Abreast
+        | Relation::Aside => None,
     };
-    let moves = !matches!(relation, Relation::Static | Relation::Staying);
+    let moves = !matches!(relation, Relation::Static | Relation::Staying | Relation::Aside);
     let usual = match relation {
         Relation::Ahead => Some(extra.speed_mps.map_or(0.5, |speed| speed.min(AHEAD_MPS))),
         Relation::Behind if overtakes(relation, &human.rules) => {
@@ -193,7 +194,8 @@ fn proposed(
         | Relation::Static
         | Relation::Leaving
         | Relation::Staying
-        | Relation::Abreast => extra.speed_mps.or_else(|| {
+        | Relation::Abreast
+        | Relation::Aside => extra.speed_mps.or_else(|| {
             pattern::pace_of(&request.social_context)
                 .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
         }),

@@ -28,6 +28,7 @@ pub(crate) fn behavior(
         }
         Relation::Staying => format!("The {role} is inside the {inside} and stays there."),
         Relation::Abreast => format!("The {role} walks beside the robot."),
+        Relation::Aside => format!("The {role} stands beside the robot's way at the {place}, and never in it."),
     };
     let mut text = first;
     for rule in rules {

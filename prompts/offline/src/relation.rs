@@ -17,6 +17,7 @@ pub(crate) fn relation(act: Act) -> Option<Relation> {
         Act::ComeOut => Relation::Leaving,
         Act::Stay => Relation::Staying,
         Act::Talk | Act::Stand => Relation::Static,
+        Act::Aside => Relation::Aside,
         Act::RunAway
         | Act::GiveWay
         | Act::Block
@@ -34,7 +35,9 @@ pub(crate) fn relation(act: Act) -> Option<Relation> {
         | Act::Walk
         | Act::TurnBack
         | Act::SlowDown
-        | Act::SpeedUp => return None,
+        | Act::SpeedUp
+        | Act::ComeClose
+        | Act::OpenUp => return None,
     })
 }
 
@@ -127,7 +130,7 @@ fn lost(cast: &mut Cast, who: usize, (relation, quote): (Relation, &str), played
         Relation::Crossing => &["crosses"],
         Relation::Abreast => &["walks beside the robot"],
         // Who comes out, or stays inside, of where it stood stood there.
-        Relation::Static | Relation::Leaving | Relation::Staying => return,
+        Relation::Static | Relation::Leaving | Relation::Staying | Relation::Aside => return,
     };
     let same = person.relation.as_ref().is_some_and(|(_, other)| other == quote);
     // `cross from opposite sides` is one way; so is what is only said again, and whoever comes out meets the robot.

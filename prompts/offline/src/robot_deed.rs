@@ -87,7 +87,10 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         | Act::Walk
         | Act::TurnBack
         | Act::SlowDown
-        | Act::SpeedUp => {}
+        | Act::SpeedUp
+        | Act::Aside
+        | Act::ComeClose
+        | Act::OpenUp => {}
     }
     let its_own = matches!(
         act,

@@ -174,7 +174,7 @@ pub(crate) fn stated(mut humans: Vec<HumanProposal>, reading: &Reading) -> Vec<H
         let doing = match found.relation {
             Relation::Crossing => "come from",
             Relation::Leaving => "come out on",
-            Relation::Static => "stand on",
+            Relation::Static | Relation::Aside => "stand on",
             Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Abreast => "walk on",
             Relation::Staying => continue,
         };

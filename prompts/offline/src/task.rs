@@ -34,6 +34,8 @@ pub(crate) struct Task {
     pub(crate) vias: Vec<End>,
     /// Words that ask for the way back.
     pub(crate) back: Option<String>,
+    /// Whether that way leads to where it began, and not to another place.
+    pub(crate) comes_home: bool,
     /// Words that say where the robot is not to go.
     pub(crate) denied: Vec<String>,
 }
@@ -64,6 +66,10 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
         if first && (onward.goal.is_some() || !onward.goals.is_empty()) {
             task = onward;
         } else {
+            let to = onward.goals.get(task.goals.len()..).unwrap_or_default();
+            let home = |end: &End| nodes(&task.starts) == end.nodes && !end.nodes.is_empty();
+            let elsewhere = onward.goal != task.goal || onward.via != task.via;
+            task.comes_home = if to.is_empty() { !elsewhere } else { to.iter().all(home) };
             task.back.get_or_insert(quote);
             task.denied = onward.denied;
         }

@@ -390,8 +390,10 @@ fn errand(task: &Task, location: &Location, reading: &mut Reading) {
             format!("`{quote}`: where the robot may not go is up to its planner and is not judged; say where it goes");
         Fault::new(FaultCode::PRead, "task", message).about([quote.as_str()])
     }));
-    if let Some(quote) = &task.back {
-        let message = format!("`{quote}`: the way back is not played; a run ends where the robot gets to its goal");
+    if let Some(quote) = task.back.as_ref().filter(|_| !task.comes_home) {
+        let message = format!(
+            "`{quote}`: the robot comes back to where it began, or stays at its goal; another way on is not played"
+        );
         reading.problems.push(Fault::new(FaultCode::PRead, "task", message).about([quote.as_str()]));
     }
 }
@@ -459,7 +461,7 @@ fn ends((story, task): (&Story, &Task), request: &Request, location: &Location, 
     played.retain(|(part, _)| match part {
         WayPart::Start => story.robot_leaves.is_none(),
         WayPart::Goal => story.robot_enters.is_none() && !car,
-        WayPart::Via | WayPart::Avoid => true,
+        WayPart::Via | WayPart::Avoid | WayPart::Back => true,
     });
     named_way::ends(&played, reading);
 }

@@ -216,7 +216,7 @@ impl Card {
         let passes = match role.relation {
             Relation::Frontal | Relation::Abreast => true,
             Relation::Behind | Relation::Ahead => overtakes,
-            Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying => false,
+            Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying | Relation::Aside => false,
         };
         match (passes, role.group && !role.line) {
             (false, _) => 0,

@@ -9,7 +9,7 @@ use crate::candidates::Scene;
 use crate::graph::Net;
 use crate::people::{Taken, Way, boarding, led_past, way};
 use crate::robot_way::{LEAST_M, Route, times_shortest};
-use crate::{Problem, inside, meant, second_meeting, spread};
+use crate::{Problem, inside, meant, named_way, second_meeting, spread};
 
 /// Who the robot speaks to as it comes near starts at least so much farther away, m, and what it costs not to.
 const SETS_OFF_M: f64 = 1.5;
@@ -126,7 +126,7 @@ fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Opti
         let ahead = human.relation == Relation::Ahead && spread.iter().any(|(id, _)| *id == human.id);
         let own = if followed || ahead { led_past(own, &taken) } else { own };
         cost += own.cost;
-        if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
+        if !matches!(human.relation, Relation::Leaving | Relation::Staying | Relation::Aside) && mate.is_none() {
             taken.starts.extend(own.nodes.first());
         }
         if human.relation == Relation::Static {
@@ -169,7 +169,11 @@ pub(crate) fn written(net: &Net<'_>, solution: &Solution, problem: &Problem<'_>)
         .collect();
     let humans: BTreeMap<HumanId, Vec<NodeId>> =
         solution.ways.iter().map(|(id, way)| (*id, net.named(&way.nodes))).collect();
-    let length = libm::round(net.length_m(&solution.route.nodes) * 10.0) / 10.0;
+    let mut robot = solution.route.nodes.clone();
+    if named_way::returns(problem.proposal) {
+        robot.extend(solution.route.nodes.iter().rev().skip(1));
+    }
+    let length = libm::round(net.length_m(&robot) * 10.0) / 10.0;
     let mut at: Vec<String> = Vec::new();
     for encounter in &encounters {
         let node = format!("`{}`", encounter.node);
@@ -184,14 +188,7 @@ pub(crate) fn written(net: &Net<'_>, solution: &Solution, problem: &Problem<'_>)
         at.join(", "),
         encounters.len()
     );
-    Paths {
-        format: FORMAT,
-        robot: net.named(&solution.route.nodes),
-        humans,
-        encounters,
-        reasoning,
-        author: problem.author.clone(),
-    }
+    Paths { format: FORMAT, robot: net.named(&robot), humans, encounters, reasoning, author: problem.author.clone() }
 }
 
 /// A way this much longer than the shortest is told with its reason, as a share.

@@ -32,6 +32,11 @@ pub(crate) fn via(proposal: &Proposal) -> Vec<NodeId> {
     demands(proposal).find(|(part, _)| *part == WayPart::Via).map(|(_, nodes)| nodes.to_vec()).unwrap_or_default()
 }
 
+/// Whether the robot comes back from its goal by the way that it came.
+pub(crate) fn returns(proposal: &Proposal) -> bool {
+    demands(proposal).any(|(part, _)| part == WayPart::Back)
+}
+
 /// Whether a way of the robot does all that is demanded of it.
 pub(crate) fn keeps(net: &Net<'_>, proposal: &Proposal, way: &[usize]) -> bool {
     demands(proposal).all(|(part, nodes)| {
@@ -42,6 +47,8 @@ pub(crate) fn keeps(net: &Net<'_>, proposal: &Proposal, way: &[usize]) -> bool {
             // A way that begins or ends there does not lead past it.
             WayPart::Via => way.iter().any(own) && ![way.first(), way.last()].into_iter().flatten().any(own),
             WayPart::Avoid => !way.iter().any(own),
+            // The way back is the same again: see `returns`.
+            WayPart::Back => true,
         }
     })
 }

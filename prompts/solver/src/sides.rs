@@ -66,7 +66,7 @@ pub(crate) fn has_floor(net: &Net<'_>, route: &Route, human: &HumanProposal, ind
 pub(crate) const fn walks_along(relation: Relation) -> bool {
     match relation {
         Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Abreast => true,
-        Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying => false,
+        Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying | Relation::Aside => false,
     }
 }
 

@@ -265,6 +265,8 @@ fn motion(action: &Action) -> NodeSpec {
             return NodeSpec::new("GoToPlace").port("place", place).port("nodes", nodes.join(","));
         }
         Action::ChangePace(mps) => return NodeSpec::new("ChangePace").port("speed", mps),
+        Action::MakeRoom => "MakeRoom",
+        Action::ApproachTo(m) => return NodeSpec::new("ComeClose").port("distance", m),
     })
 }
 

@@ -32,7 +32,7 @@ impl<'a> Evidence<'a> {
     #[must_use]
     pub fn stands(&self, human: HumanId) -> bool {
         let human = self.proposal.and_then(|proposal| proposal.human(human));
-        human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying))
+        human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside))
     }
 
     /// Evidence of a recording alone.

@@ -143,6 +143,7 @@ pub(crate) fn recording(walks: &[Walk], seconds: f64, step_s: f64) -> Recording 
             "TurnBack",
             "ChangePace",
             "GoToPlace",
+            "MakeRoom",
         ]
         .map(String::from)
         .to_vec(),

@@ -49,6 +49,8 @@ mod meetings;
 #[cfg(test)]
 mod reasons;
 #[cfg(test)]
+mod room;
+#[cfg(test)]
 mod scenarios;
 #[cfg(test)]
 mod signs;

@@ -123,6 +123,7 @@ fn phrase(leaf: &str) -> Option<String> {
         Action::StandStill,
         Action::Navigate,
         Action::TurnBack,
+        Action::MakeRoom,
     ];
     if leaf.is_empty() {
         return None;

@@ -63,6 +63,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::Looks { .. }
         | Predicate::RunsAway { .. }
         | Predicate::GivesWay { .. }
+        | Predicate::MakesRoom { .. }
         | Predicate::Follows { .. }
             if finding.standing == Standing::NotTriggered =>
         {
@@ -78,12 +79,14 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::StandsStill { .. }
         | Predicate::RunsAway { .. }
         | Predicate::GivesWay { .. }
+        | Predicate::MakesRoom { .. }
         | Predicate::Follows { .. }
         | Predicate::Abreast { .. } => (FaultCode::DNoTrig, Stage::Behaviors),
         Predicate::Gestures { .. } | Predicate::GesturesTo { .. } => (FaultCode::DNoGest, Stage::Behaviors),
-        Predicate::Formation { .. } | Predicate::WalksTogether { .. } | Predicate::Queues { .. } => {
-            (FaultCode::DGroup, Stage::Paths)
-        }
+        Predicate::StaysAside { .. }
+        | Predicate::Formation { .. }
+        | Predicate::WalksTogether { .. }
+        | Predicate::Queues { .. } => (FaultCode::DGroup, Stage::Paths),
         Predicate::Plausible => (FaultCode::DPen, Stage::Paths),
         Predicate::Humans { .. }
         | Predicate::Meets { .. }

@@ -33,6 +33,9 @@ pub struct Step {
     /// How fast they walk from then on, for `change_pace`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pace: Option<Pace>,
+    /// How near they come, m, for `approach`: 0.7 to 2. Default 1.2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near_m: Option<f64>,
 }
 
 /// A trigger of a form: as [`Trigger`], with people by name.
@@ -161,6 +164,8 @@ pub enum Deed {
     GoTo(PlaceWord),
     /// Walks on, from then on at another pace.
     ChangePace,
+    /// Steps out of the robot's way, and comes back once it has passed.
+    MakeRoom,
 }
 
 impl Deed {
@@ -173,6 +178,7 @@ impl Deed {
         ("follow_human", "{ follow_human = \"nurse\" }"),
         ("run_away", "\"run_away\""),
         ("give_way", "\"give_way\""),
+        ("make_room", "\"make_room\""),
         ("block", "\"block\""),
         ("approach", "\"approach\""),
         ("look_at", "{ look_at = \"nurse\" }"),
@@ -198,6 +204,7 @@ impl Deed {
             | Self::FollowRobot
             | Self::RunAway
             | Self::GiveWay
+            | Self::MakeRoom
             | Self::Block
             | Self::Approach
             | Self::TurnBack
@@ -210,7 +217,7 @@ impl Deed {
     const fn ends(&self) -> Option<Trigger> {
         match self {
             Self::Navigate | Self::TurnBack | Self::GoTo(_) => Some(Trigger::GoalReached),
-            Self::GiveWay => Some(Trigger::RobotPassed),
+            Self::GiveWay | Self::MakeRoom => Some(Trigger::RobotPassed),
             Self::StandStill
             | Self::LookAtRobot
             | Self::FollowRobot
@@ -286,6 +293,7 @@ impl Form {
                 Action::ChangePace(step.pace?.mps().or_else(|| normal.then_some(Step::NORMAL_MPS))?)
             }
             // A sign is made facing whomever it is made to.
+            (Some(Deed::Approach), _) if step.near_m.is_some() => Action::ApproachTo(step.near_m?),
             (None | Some(Deed::StandStill), Some(AgentId::Human(id))) => Action::LookAt(id),
             (None | Some(Deed::StandStill), Some(AgentId::Robot)) => Action::LookAtRobot,
             (None, None) => Action::StandStill,
@@ -328,6 +336,7 @@ impl Form {
             Deed::FollowHuman(name) => Action::FollowHuman(self.one(name)?),
             Deed::RunAway => Action::RunAway,
             Deed::GiveWay => Action::GiveWay,
+            Deed::MakeRoom => Action::MakeRoom,
             Deed::Block => Action::Block,
             Deed::Approach => Action::Approach,
             Deed::LookAt(name) => Action::LookAt(self.one(name)?),

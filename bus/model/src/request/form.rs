@@ -15,7 +15,7 @@ use crate::proposal::{Relation, Side};
 
 const HUMAN_KEYS: [&str; 13] =
     ["id", "count", "role", "relation", "side", "facing", "place", "start", "goal", "pace", "group", "does", "reacts"];
-const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast";
+const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast, aside";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
 const MOMENTS: Words = Words { what: "moment", all: RobotMoment::WORDS, more: "" };
 const DEEDS: Words = Words { what: "deed of the robot", all: RobotDeed::WORDS, more: "" };
@@ -99,7 +99,7 @@ impl Door<'_> {
         }
         let facing = section.get("facing").and_then(|_| self.word(&section, "facing")).map(FacingWord::from);
         if let (Some(facing), Some(relation)) = (&facing, relation) {
-            let stands = matches!(relation, Relation::Static | Relation::Staying);
+            let stands = matches!(relation, Relation::Static | Relation::Staying | Relation::Aside);
             if !stands || section.get("group").is_some() {
                 let found = if stands {
                     format!("`{facing}` of somebody in a group")

@@ -1,6 +1,7 @@
 //! What the door says of forms: everything at once, with line, key, value and what is allowed.
 
 use crate::form::{Deed, Form, PlaceWord, When};
+use crate::proposal::Relation;
 use crate::{Action, AgentId, GroupId, HumanId, PlaceClass, Request, Trigger};
 
 const PLAIN: &str = "location = \"office\"\ntask = \"Deliver mail\"\n";
@@ -232,6 +233,20 @@ fn a_sign_is_made_to_somebody_and_an_act_changes_the_way() {
 }
 
 #[test]
+fn a_bystander_a_group_that_opens_and_how_near_somebody_comes_are_stated() {
+    let form = form(
+        "[[human]]\nrelation = \"aside\"\nside = \"left\"\nfacing = \"robot\"\n\
+         [[human]]\nrelation = \"static\"\ndoes = [{ when = { robot_says = \"EXCUSE_ME\" }, act = \"make_room\" }]\n\
+         [[human]]\nrelation = \"frontal\"\ndoes = [{ when = { robot_near = 4 }, act = \"approach\", near_m = 0.8, for_s = 3 }]\n",
+    );
+    let people = form.people();
+    assert_eq!(people[0].human.relation, Relation::Aside);
+    let room = &people[1].rules[0];
+    assert_eq!((&room.act, &room.until[..]), (&Action::MakeRoom, &[Trigger::RobotPassed][..]));
+    assert_eq!(people[2].rules[0].act, Action::ApproachTo(0.8));
+}
+
+#[test]
 fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
     let human = "[[human]]\nid = \"a\"\nrelation = \"static\"\n";
     for (more, wanted) in [
@@ -242,6 +257,12 @@ fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
         ("does = [{ say = \"WAITT\" }]\n", "`WAITT` is no sign (nearest: WAIT; signs: WAIT, PROCEED"),
         ("does = [{ act = \"turn_back\" }]\n", "`human.does.act`: walks, but stands by its relation"),
         ("does = [{ act = \"change_pace\" }]\n", "`human.does.pace`: is missing for change_pace"),
+        ("does = [{ act = \"approach\", near_m = 0.2 }]\n", "`human.does.near_m`: 0.2 m is out of range"),
+        ("does = [{ act = \"block\", near_m = 1.0 }]\n", "`human.does.near_m`: belongs to act = \"approach\""),
+        (
+            "[[human]]\nrelation = \"frontal\"\ndoes = [{ act = \"make_room\" }]\n",
+            "`human.does.act`: makes room, but walks by its relation",
+        ),
         ("does = [{ act = \"block\", pace = \"slow\" }]\n", "`human.does.pace`: belongs to act"),
         ("reacts = [{ when = \"always\", act = { go_to = \"room\" } }]\n", "changes the way or the pace for good"),
         (

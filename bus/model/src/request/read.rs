@@ -268,7 +268,7 @@ impl Door<'_> {
     }
 
     fn robot<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> RobotRequest {
-        let keys = ["model", "planners", "waypoints", "gestures", "start", "goal", "via", "avoid", "does"];
+        let keys = ["model", "planners", "waypoints", "gestures", "start", "goal", "via", "avoid", "return", "does"];
         let section = self.section(node, "robot.", &keys);
         let unset = RobotRequest::default();
         RobotRequest {
@@ -280,6 +280,7 @@ impl Door<'_> {
             goal: self.place(&section, "goal"),
             via: self.place(&section, "via"),
             avoid: self.places(&section, "avoid"),
+            returns: self.maybe(&section, "return", "true, or false").unwrap_or(false),
             does: self.robot_steps(&section, names),
         }
     }

@@ -8,7 +8,9 @@ use crate::form::{Deed, Form, FormHuman, Pace, Step, When};
 use crate::gesture::Gesture;
 use crate::proposal::Relation;
 
-const STEP_KEYS: [&str; 7] = ["when", "act", "for_s", "until", "say", "to", "pace"];
+const STEP_KEYS: [&str; 8] = ["when", "act", "for_s", "until", "say", "to", "pace", "near_m"];
+/// How near somebody may come up to the robot, m: bodies touch at 0.55 m.
+const NEAR_M: [f64; 2] = [0.7, 2.0];
 /// Steps of `does`, and of `reacts`.
 const MOST_STEPS: usize = 12;
 /// Longest time of a step, s.
@@ -90,7 +92,8 @@ impl Door<'_> {
         }
         let to = self.to(&section, (act.as_ref(), say.is_some()), names);
         let pace = self.step_pace(&section, act.as_ref());
-        Some(Step { when, act, for_s, until, say, to, pace })
+        let near_m = self.step_near(&section, act.as_ref());
+        Some(Step { when, act, for_s, until, say, to, pace, near_m })
     }
 
     /// To whom a sign is made.
@@ -135,6 +138,17 @@ impl Door<'_> {
         pace
     }
 
+    /// How near `approach` comes; no other act has it.
+    fn step_near(&mut self, section: &Section<'_>, act: Option<&Deed>) -> Option<f64> {
+        let near_m = self.maybe::<f64>(section, "near_m", "0.7 to 2 (m)")?;
+        let node = section.get("near_m")?;
+        if act != Some(&Deed::Approach) {
+            self.bad(section.key("near_m"), node.at, "belongs to act = \"approach\"", "leave it out");
+        }
+        self.number(&section.key("near_m"), node, Some((near_m, NEAR_M, "m")));
+        Some(near_m)
+    }
+
     fn whens<'n>(&mut self, section: &Section<'n>, key: &'static str, names: &mut Names<'n>) -> Vec<When> {
         let Some(node) = section.get(key) else { return Vec::new() };
         let nodes: Vec<&Node> = if let Kind::List(nodes) = &node.kind { nodes.iter().collect() } else { vec![node] };
@@ -158,12 +172,17 @@ impl Door<'_> {
             return;
         }
         for (who, (human, node)) in form.humans.iter().zip(nodes).enumerate() {
-            let stands = matches!(human.relation, Relation::Static | Relation::Staying) && human.goal.is_none();
+            let stands = matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
+                && human.goal.is_none();
             for (number, step) in human.does.iter().enumerate() {
                 let at = place(node, "does", number);
                 if stands && matches!(step.act, Some(Deed::TurnBack | Deed::ChangePace)) {
                     let hint = "`frontal`, `crossing`, `leaving` or another relation of somebody who walks";
                     self.bad("human.does.act", at, "walks, but stands by its relation", hint);
+                }
+                if !stands && step.act == Some(Deed::MakeRoom) {
+                    let hint = "relation = \"static\", alone or in a group; whoever walks gives way: give_way";
+                    self.bad("human.does.act", at, "makes room, but walks by its relation", hint);
                 }
                 let own = |name: &&String| meant(form, name).contains(&who) && human.count == 1;
                 if step.to.as_ref().filter(own).is_some()
@@ -306,7 +325,9 @@ fn never_ends(form: &Form, trigger: &When) -> Option<(String, String)> {
 }
 
 fn never_done(human: &FormHuman) -> bool {
-    human.does.is_empty() && human.goal.is_none() && matches!(human.relation, Relation::Static | Relation::Staying)
+    human.does.is_empty()
+        && human.goal.is_none()
+        && matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
 }
 
 /// Steps that have to be over before this one is: each with whoever does it.

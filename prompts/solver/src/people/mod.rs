@@ -9,6 +9,7 @@ use crate::robot_way::Route;
 use crate::sides;
 
 mod ahead;
+mod aside;
 mod behind;
 pub(crate) mod boarding;
 mod crossing;
@@ -126,6 +127,7 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
         Relation::Static => standing::way(human, route, taken),
         Relation::Leaving => leaving::way(human, route, taken),
         Relation::Staying => staying::way(human, route, taken),
+        Relation::Aside => aside::way(human, route, taken),
     }
 }
 

@@ -145,7 +145,12 @@ fn other_relation(answer: &mut Value, question: &Question, draw: u64) -> Option<
     let path = answer.get_mut("humans")?.get_mut(chosen.id.to_string())?;
     *path = match chosen.relation {
         // With the robot in place of towards or across it; a walk in place of standing.
-        Relation::Frontal | Relation::Crossing | Relation::Static | Relation::Staying | Relation::Leaving => {
+        Relation::Frontal
+        | Relation::Crossing
+        | Relation::Static
+        | Relation::Staying
+        | Relation::Leaving
+        | Relation::Aside => {
             json!(robot)
         }
         Relation::Behind | Relation::Ahead | Relation::Abreast => json!(robot.into_iter().rev().collect::<Vec<_>>()),

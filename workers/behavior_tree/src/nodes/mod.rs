@@ -122,6 +122,8 @@ pub const STEPS: &[&NodeSheet] = &[
     &step_acts::TURN_BACK,
     &step_acts::GO_TO,
     &step_acts::CHANGE_PACE,
+    &step_acts::MAKE_ROOM,
+    &step_acts::COME_CLOSE,
 ];
 
 /// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.

@@ -53,3 +53,22 @@ pub(super) const CHANGE_PACE: NodeSheet = NodeSheet {
     role: Role::Moves(|ports| Some(Action::ChangePace(ports.real(2)?))),
     ..REGULAR_NAV
 };
+
+/// `MakeRoom`.
+pub(super) const MAKE_ROOM: NodeSheet = NodeSheet {
+    tag: "MakeRoom",
+    library: Library::Native,
+    about: "steps out of the robot's way, and goes back to where they stood once it has passed",
+    role: Role::Moves(|_| Some(Action::MakeRoom)),
+    ..REGULAR_NAV
+};
+
+/// `ComeClose`.
+pub(super) const COME_CLOSE: NodeSheet = NodeSheet {
+    tag: "ComeClose",
+    library: Library::Native,
+    ports: &[PortSheet::OWN, PortSheet::STEP, PortSheet::must("distance", PortKind::Meters, "how near they come")],
+    about: "goes up to the robot as near as a distance, and keeps so near while it goes away",
+    role: Role::Moves(|ports| Some(Action::ApproachTo(ports.real(2)?))),
+    ..REGULAR_NAV
+};

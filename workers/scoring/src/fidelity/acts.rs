@@ -35,9 +35,7 @@ const GESTURE_M: f64 = 8.0;
 /// A gesture with a reason comes so long after it at most, s.
 const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
-const ASIDE_M: f64 = 0.7;
-/// Somebody who gives way goes so far off the line by themselves, m.
-const OFF_LINE_M: f64 = 0.2;
+pub(super) const ASIDE_M: f64 = 0.7;
 /// Somebody is seen to stand when the robot comes this near, m: as far as anybody sees it.
 const STANDS_REACH_M: f64 = 15.0;
 /// Speed away from the robot that is running from it, m/s.
@@ -238,60 +236,6 @@ pub(super) fn runs_away(signals: &Signals<'_>, human: HumanId, by_m: f64) -> Fin
     }
 }
 
-/// How far a human goes by themselves until the robot passes, and how much farther from its line they are then than when they
-/// were nearest to it, m: from the line on which it passes, or from its intended way. A robot that swerves adds nothing to it.
-fn went_aside(moments: &[Moment], passing: &Moment) -> (f64, f64) {
-    let before = || moments.iter().take_while(|moment| moment.t <= passing.t);
-    let Some(begin) = moments.first() else { return (0.0, 0.0) };
-    let own_m = before().map(|moment| (moment.human.at - begin.human.at).norm()).fold(0.0, f64::max);
-    let least = |of: &dyn Fn(&Moment) -> f64| before().map(of).fold(f64::INFINITY, f64::min);
-    let line = |moment: &Moment| passing.robot.facing().perp(&(moment.human.at - passing.robot.at)).abs();
-    let way = |moment: &Moment| moment.way.map_or(0.0, |(_, off)| off);
-    let off_m = [line(passing) - least(&line), way(passing) - least(&way)];
-    (own_m, off_m.into_iter().fold(0.0, f64::max))
-}
-
-/// The human is beside the robot's line as the robot passes, and has gone there.
-pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
-    if let Some(found) = absent(signals, human) {
-        return found;
-    }
-    let since = match since_act(signals, human, &Action::GiveWay) {
-        Ok(from) => from,
-        Err(never) => return never,
-    };
-    let moments = since.moments(signals.of(human));
-    let passing = moments
-        .iter()
-        .zip(moments.iter().skip(1))
-        .filter(|(a, b)| a.ahead_m > 0.0 && b.ahead_m <= 0.0 && b.distance_m <= 3.0)
-        .map(|(_, b)| b)
-        .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-    match passing {
-        Some(moment) => {
-            let aside = moment.left_m.abs();
-            // What they did before their tree had them give way is none of it.
-            let by_tree = signals.leaves_of(human).iter().filter(|span| Action::GiveWay.is_leaf(&span.name));
-            let begins_s = by_tree.map(|span| span.from_s).find(|t| *t <= moment.t && since.counts(*t));
-            let begins = moments.partition_point(|other| begins_s.is_some_and(|t| other.t < t));
-            let (own_m, off_m) = went_aside(moments.get(begins..).unwrap_or_default(), moment);
-            let text = format!(
-                "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), having gone {own_m:.2} m \
-                 and {off_m:.2} m off it ({GOES_M} m and {OFF_LINE_M} m asked)",
-                moment.t
-            );
-            let moved = (own_m - GOES_M).min(off_m - OFF_LINE_M);
-            Finding::by_margin((aside - ASIDE_M).min(moved), vec![moment.t], text)
-        }
-        None => {
-            let nearest = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-            let text =
-                nearest.map_or_else(String::new, |at| format!(", closest {:.1} m at {:.1} s", at.distance_m, at.t));
-            Finding::never(-ASIDE_M, vec![], format!("the robot never passed {human}{text}"))
-        }
-    }
-}
-
 /// The agent makes the gesture where the other can notice it.
 pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) -> Finding {
     let Some(track) = signals.track(agent) else {
@@ -388,6 +332,9 @@ fn listeners(signals: &Signals<'_>, speaker: HumanId, gesture: Gesture) -> Vec<H
         .collect()
 }
 
+/// Whoever comes up to the robot as near as a distance is at most so much farther away, m.
+const CLOSE_M: f64 = 0.15;
+
 /// Marks of an action as the motion alone shows it, with the time for which it must be kept.
 pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
     let moments = signals.of(human);
@@ -408,7 +355,7 @@ pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> 
         Action::FollowRobot => (follow(AgentId::Robot), 1.5),
         Action::FollowHuman(id) => (follow(AgentId::Human(*id)), 1.5),
         Action::RunAway => (moments.iter().map(flee_mark).collect(), 0.5),
-        Action::GiveWay => {
+        Action::GiveWay | Action::MakeRoom => {
             // Aside already or stepping aside: both leave the line free.
             let marks = moments.iter().map(|m| Mark::new(m.t, m.off_line_m().min(m.distance_m) - (ASIDE_M - 0.1)));
             (marks.collect(), 0.3)
@@ -417,6 +364,10 @@ pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> 
         Action::LookAtRobot => (look_marks(moments, |_| true), 0.5),
         Action::LookAt(id) => (addressed::watch_marks(signals, human, AgentId::Human(*id)), 0.5),
         Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_) => (speeds(|speed| speed - 0.1), 0.5),
+        Action::ApproachTo(near_m) => {
+            let reach_m = near_m + CLOSE_M;
+            (moments.iter().map(|m| Mark::new(m.t, reach_m - m.distance_m)).collect(), 0.3)
+        }
         Action::Approach => {
             let marks = moments.iter().map(|m| {
                 let nearing = -m.human.velocity.dot(&m.away()) - 0.2;
@@ -475,7 +426,7 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
     };
     match action {
         Action::FollowRobot | Action::FollowHuman(_) => way_m() >= FOLLOWS_M,
-        Action::Approach => way_m() >= GOES_M,
+        Action::Approach | Action::ApproachTo(_) => way_m() >= GOES_M,
         Action::RunAway => most(begin.away(), false) >= GOES_M,
         Action::GiveWay => {
             let facing = begin.robot.facing();
@@ -487,7 +438,9 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
         | Action::Block
         | Action::LookAtRobot
         | Action::LookAt(_)
-        | Action::ChangePace { .. } => true,
+        | Action::ChangePace { .. }
+        // Of a group that makes room some stand beside the line already: the clause of the act says that somebody of it goes.
+        | Action::MakeRoom => true,
     }
 }
 

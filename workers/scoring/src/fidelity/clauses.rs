@@ -15,8 +15,8 @@ use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
 use crate::fidelity::{
-    acts, addressed, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring, robot,
-    setting, sides, steps, turns,
+    acts, addressed, aside, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring,
+    robot, setting, sides, steps, turns,
 };
 use crate::temporal::{Signal, Within};
 use crate::tracks::{TrackFault, Tracks};
@@ -229,7 +229,8 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         for encounter in &paths.encounters {
             let human = encounter.human;
             let shown = only_follows(signals, given, human) || made_way(signals, human);
-            let apart = |plan: &Proposal| plan.is_let_through(human) || plan.is_leaving_path(human);
+            let aside = |plan: &Proposal| plan.human(human).is_some_and(|one| one.relation == Relation::Aside);
+            let apart = |plan: &Proposal| plan.is_let_through(human) || plan.is_leaving_path(human) || aside(plan);
             if shown || signals.evidence.proposal.is_some_and(apart) || !stands_for_queue(signals, given, human) {
                 continue;
             }
@@ -269,7 +270,12 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
                 Relation::Frontal | Relation::Crossing => true,
                 // Where the robot waits for those who leave, they need not hurry.
                 Relation::Leaving => !waits,
-                Relation::Behind | Relation::Ahead | Relation::Static | Relation::Staying | Relation::Abreast => false,
+                Relation::Behind
+                | Relation::Ahead
+                | Relation::Static
+                | Relation::Staying
+                | Relation::Abreast
+                | Relation::Aside => false,
             };
             // A crowd is timed by the clause that tells of it; a reaction may keep somebody from the node: then its own clauses tell.
             if timed && !crowd && human.rules.iter().all(keeps_walk) && signals.encounter(id).is_some() {
@@ -353,11 +359,13 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::Looks { human, for_s } => acts::looks(signals, *human, *for_s),
         Predicate::StandsStill { human, for_s } => acts::stands_still(signals, *human, *for_s),
         Predicate::RunsAway { human, by_m } => acts::runs_away(signals, *human, *by_m),
-        Predicate::GivesWay { human } => acts::gives_way(signals, *human),
+        Predicate::GivesWay { human } => aside::gives_way(signals, *human),
         Predicate::Reacts { human, when, act, within_s } => reactions::reacts(signals, *human, when, act, *within_s),
         Predicate::GesturesTo { human, gesture, to } => addressed::gestures_to(signals, *human, *gesture, *to),
         Predicate::TurnsBack { human } => turns::turns_back(signals, *human),
         Predicate::GoesTo { human, nodes } => turns::goes_to(signals, *human, nodes),
+        Predicate::StaysAside { human } => aside::stays_aside(signals, *human),
+        Predicate::MakesRoom { human } => aside::makes_room(signals, *human),
         Predicate::ChangesPace { human, mps } => turns::changes_pace(signals, *human, *mps),
         Predicate::Step { human, rule, within_s } => steps::step(signals, *human, rule, *within_s),
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),

@@ -184,6 +184,8 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         | Predicate::TurnsBack { .. }
         | Predicate::GoesTo { .. }
         | Predicate::ChangesPace { .. }
+        | Predicate::StaysAside { .. }
+        | Predicate::MakesRoom { .. }
         | Predicate::RobotObeys { .. } => false,
     }
 }

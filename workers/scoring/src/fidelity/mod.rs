@@ -6,6 +6,7 @@
 
 mod acts;
 mod addressed;
+mod aside;
 mod clauses;
 mod company;
 mod coverage;

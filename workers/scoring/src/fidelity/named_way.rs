@@ -21,12 +21,13 @@ pub(super) fn robot_way(signals: &Signals<'_>, part: WayPart, nodes: &[NodeId]) 
     let way = &paths.robot;
     let own = |node: &NodeId| nodes.contains(node);
     let list = nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ");
-    let ends = || [way.first(), way.last()].into_iter().flatten();
+    let ends = || [way.first(), paths.robot_goal()].into_iter().flatten();
     let planned = match part {
         WayPart::Start => way.first().is_some_and(own),
-        WayPart::Goal => way.last().is_some_and(own),
+        WayPart::Goal => paths.robot_goal().is_some_and(own),
         WayPart::Via => way.iter().any(own) && !ends().any(own),
         WayPart::Avoid => !way.iter().any(own),
+        WayPart::Back => paths.comes_back(),
     };
     let told = format!("the robot's way as planned {} {list}", if planned { part.does() } else { part.does_not() });
     if !planned {
@@ -54,6 +55,17 @@ pub(super) fn robot_way(signals: &Signals<'_>, part: WayPart, nodes: &[NodeId]) 
                 return Finding::not_applicable("the recording is empty");
             };
             (AT_M - m, t, format!("comes within {m:.2} m of it at {t:.1} s"))
+        }
+        WayPart::Back => {
+            let start = way.first().and_then(|id| location.graph.node(id)).map(|node| node.at);
+            let turn = paths.robot_goal().and_then(|id| location.graph.node(id)).map(|node| node.at);
+            let (Some(start), Some(turn), Some(last)) = (start, turn, robot.present().last()) else {
+                return Finding::not_applicable("the recording is empty");
+            };
+            let reached = robot.present().map(|sample| (sample.at - turn).norm()).fold(f64::INFINITY, f64::min);
+            let home = (last.at - start).norm();
+            let drives = format!("comes within {reached:.2} m of its goal and ends {home:.2} m from where it began");
+            ((AT_M - reached).min(AT_M - home), last.t, drives)
         }
         WayPart::Avoid => {
             let rooms = signals.enclosures.as_ref();

@@ -50,7 +50,7 @@ pub(super) fn on_side(signals: &Signals<'_>, human: HumanId, side: Side) -> Find
     match relation {
         Some(Relation::Crossing) => comes(&drive, moments, nearest, (human, side, false)),
         Some(Relation::Leaving) => comes(&drive, moments, nearest, (human, side, true)),
-        Some(Relation::Static) | None => stands(&drive, nearest, (human, side)),
+        Some(Relation::Static | Relation::Aside) | None => stands(&drive, nearest, (human, side)),
         Some(Relation::Staying) => Finding::fails(-1.0, vec![], format!("{human} stays inside, on no side")),
         Some(Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Abreast) => {
             walks(&drive, moments, (human, side, relation == Some(Relation::Ahead)))

@@ -67,7 +67,7 @@ pub(crate) fn since(signals: &Signals<'_>, human: HumanId, of: impl Fn(&Rule) ->
     let Some(person) = signals.evidence.proposal.and_then(|proposal| proposal.human(human)) else {
         return Ok(Since::START);
     };
-    let stands = matches!(person.relation, Relation::Static | Relation::Staying);
+    let stands = matches!(person.relation, Relation::Static | Relation::Staying | Relation::Aside);
     let rules: Vec<&Rule> = person.rules.iter().filter(|rule| of(rule)).collect();
     if rules.is_empty() || stands && rules.iter().all(|rule| rule.act == Action::StandStill && rule.gesture.is_none()) {
         return Ok(Since::START);

@@ -68,10 +68,11 @@ const fn most_s(act: &Action) -> f64 {
         Action::Navigate
         | Action::RunAway
         | Action::Approach
+        | Action::ApproachTo(_)
         | Action::TurnBack
         | Action::GoTo { .. }
         | Action::ChangePace(_) => 0.5,
-        Action::GiveWay => 0.3,
+        Action::GiveWay | Action::MakeRoom => 0.3,
     }
 }
 
@@ -196,7 +197,8 @@ fn lasts(signals: &Signals<'_>, human: HumanId, rule: &Rule, begun_s: f64) -> Re
         (&rule.act, rule.until.as_slice()),
         (Action::Navigate | Action::TurnBack | Action::GoTo { .. }, [Trigger::GoalReached])
     );
-    let own = to_the_end || matches!((&rule.act, rule.until.as_slice()), (Action::GiveWay, [Trigger::RobotPassed]));
+    let gives = matches!(rule.act, Action::GiveWay | Action::MakeRoom);
+    let own = to_the_end || gives && rule.until == [Trigger::RobotPassed];
     let (until_s, over_s) = over(signals, human, rule, begun_s);
     if !rule.until.is_empty() && until_s.is_none() && rule.for_s.is_none() && !own {
         let until = rule.until.iter().map(Trigger::clause).collect::<Vec<_>>().join(" and ");

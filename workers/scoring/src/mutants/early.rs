@@ -69,7 +69,9 @@ fn before_reason(evidence: &Evidence<'_>, add: &mut Add<'_>) {
                 let reacts = matches!(&clause.predicate, Predicate::Reacts { human: who, act: of, .. } if *who == id && *of == act);
                 reacts || stands && act == Action::StandStill || looks && act == Action::LookAtRobot
             };
-            if matches!(human.relation, Relation::Static | Relation::Staying) || !musts(evidence).any(asked) {
+            if matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
+                || !musts(evidence).any(asked)
+            {
                 continue;
             }
             let reason = since(&signals, id, |rule| rule.act == act).ok().filter(|reason| reason.secs() >= REASON_SECS);

@@ -19,7 +19,9 @@ pub(super) fn named_way(evidence: &Evidence<'_>, add: &mut Add<'_>) {
         let about = format!("robot, {}", part.name());
         match part {
             WayPart::Start => add("starts at the other end", about, reversed(run, AgentId::Robot)),
-            WayPart::Goal | WayPart::Via => add("the robot stays where it starts", about, frozen(run, AgentId::Robot)),
+            WayPart::Goal | WayPart::Via | WayPart::Back => {
+                add("the robot stays where it starts", about, frozen(run, AgentId::Robot))
+            }
             WayPart::Avoid => {
                 if let Some(node) = nodes.first().and_then(|id| location.graph.node(id)) {
                     add("drives where it should not", about, drives_into(run, node.at));

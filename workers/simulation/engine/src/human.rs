@@ -100,6 +100,8 @@ pub(crate) struct Human {
     pub(crate) errand: Errand,
     /// Where it was at tick 0.
     pub(crate) home: Point,
+    /// Whether it makes room for the robot: then it stands in its way until then.
+    pub(crate) opens: bool,
     /// Where it stands while it stands.
     pub(crate) anchor: Option<Point>,
     /// Sidestep that is being made on the way, m to the left.
@@ -211,7 +213,9 @@ impl Human {
     /// Whether it never leaves its place by itself.
     pub(crate) fn stays(&self) -> bool {
         self.route.length_m() < 0.05
-            || !self.diverted && matches!(self.relation, Relation::Static | Relation::Staying) && self.nodes.len() <= 1
+            || !self.diverted
+                && matches!(self.relation, Relation::Static | Relation::Staying | Relation::Aside)
+                && self.nodes.len() <= 1
     }
 }
 
@@ -231,6 +235,8 @@ pub(crate) const fn leaf_name(action: &Action) -> &'static str {
         Action::TurnBack => "TurnBack",
         Action::GoTo { .. } => "GoToPlace",
         Action::ChangePace(_) => "ChangePace",
+        Action::MakeRoom => "MakeRoom",
+        Action::ApproachTo(_) => "ComeClose",
     }
 }
 
@@ -249,7 +255,8 @@ pub(crate) const LEAVES: [&str; 10] = [
 ];
 
 /// Leaves of acts that only steps of a form have; in a header they come after those of recorded people.
-pub(crate) const STEP_LEAVES: [&str; 4] = ["WatchHuman", "TurnBack", "ChangePace", "GoToPlace"];
+pub(crate) const STEP_LEAVES: [&str; 6] =
+    ["WatchHuman", "TurnBack", "ChangePace", "GoToPlace", "MakeRoom", "ComeClose"];
 
 /// Number of the leaf of an action in [`LEAVES`], or among [`STEP_LEAVES`] behind them and the two of recorded people.
 pub(crate) const fn leaf_number(action: &Action) -> u16 {
@@ -267,6 +274,8 @@ pub(crate) const fn leaf_number(action: &Action) -> u16 {
         Action::TurnBack => 13,
         Action::ChangePace(_) => 14,
         Action::GoTo { .. } => 15,
+        Action::MakeRoom => 16,
+        Action::ApproachTo(_) => 17,
     }
 }
 

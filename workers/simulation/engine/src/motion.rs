@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, Relation, SceneGraph, Vector};
+use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, Relation, SceneGraph, Trigger, Vector};
 
 use crate::block::block;
 use crate::floor::Floor;
@@ -118,9 +118,11 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
             None => Want::STAND,
         },
         Action::LookAt(id) => scene.trails.get(&id).map_or(Want::STAND, |(at, ..)| Want::stand_facing(*at)),
-        Action::Approach => approach(human, scene),
+        Action::Approach => approach(human, scene, APPROACH_M, false),
+        Action::ApproachTo(near_m) => approach(human, scene, near_m, true),
         Action::Block => block(human, scene),
         Action::GiveWay => give_way(human, scene),
+        Action::MakeRoom => open(human, scene),
         Action::RunAway => run_away(human, scene),
     }
 }
@@ -390,15 +392,27 @@ fn follow(human: &mut Human, scene: &Scene<'_>, leader: &Point, velocity: &Vecto
     Want { target: target.or(Some(*leader)), speed_mps: speed, face: Some(*leader), drawn: true }
 }
 
-fn approach(human: &mut Human, scene: &Scene<'_>) -> Want {
+/// Goes up to the robot as near as a distance; `after` it, where it drives away.
+fn approach(human: &mut Human, scene: &Scene<'_>, near_m: f64, after: bool) -> Want {
     let Some(robot) = scene.robot else { return Want::STAND };
     let distance = (robot.at() - human.at).norm();
-    if distance <= APPROACH_M + 0.05 {
+    if distance <= near_m + 0.05 {
         return Want::stand_facing(robot.at());
     }
-    let speed = (1.5 * (distance - APPROACH_M) + 0.1).min(human.speed_mps);
+    let away = (robot.at() - human.at) / distance.max(1e-6);
+    let recedes = if after { robot.velocity.dot(&away).max(0.0) } else { 0.0 };
+    let speed = (1.5 * (distance - near_m) + 0.1 + recedes).min(human.speed_mps);
     let target = round(human, scene, &robot.at()).unwrap_or_else(|| robot.at());
     Want { target: Some(target), speed_mps: speed, face: Some(robot.at()), drawn: true }
+}
+
+/// Steps out of the robot's way until it has passed, and goes back to where they stood.
+fn open(human: &mut Human, scene: &Scene<'_>) -> Want {
+    // Whoever has let the robot through goes back to their place: see `stay`.
+    human.yields_until_s = human.yields_until_s.max(scene.now_s);
+    let passed =
+        scene.robot.is_some_and(|robot| Trigger::is_passed((robot.at() - human.at).norm(), human.nearest_robot_m));
+    if passed { stay(human, scene) } else { give_way(human, scene) }
 }
 
 /// The robot's line: its way ahead while it keeps to it, else straight on.

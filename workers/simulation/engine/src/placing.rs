@@ -101,7 +101,8 @@ fn spot(
     };
     let apart = if human.group.is_some() || door.is_some() { APART_CLOSE_M } else { APART_M };
     let behind = robot.filter(|_| human.relation == Relation::Behind);
-    let stands = matches!(human.relation, Relation::Staying | Relation::Static) && human.doors.is_empty();
+    let stands =
+        matches!(human.relation, Relation::Staying | Relation::Static | Relation::Aside) && human.doors.is_empty();
     let goal = robot.and_then(|(_, route)| route.end()).filter(|_| stands && door.is_none() && human.group.is_none());
     let free = |at: &Point| {
         let close = |(other, least): &(Point, f64)| {
@@ -110,6 +111,7 @@ fn spot(
         !taken.iter().any(close)
             && goal.is_none_or(|goal| (at - goal).norm() >= GOAL_FREE_M)
             && beside.as_ref().is_none_or(|beside| beside.left_m(at) >= BESIDE_LEAST_M)
+            && off_way(human, at, robot)
             && floor.clearance_m(at) >= human.radius_m + MARGIN_M
     };
     let mut best: Option<(f64, Point)> = None;
@@ -207,11 +209,22 @@ fn farther(floor: &Floor, home: &Point, radius_m: f64, free: &dyn Fn(&Point) -> 
     None
 }
 
+/// Whether a place is as far beside the robot's way as somebody stands who is not in it, on their side of it; of others it is not asked.
+fn off_way(human: &Human, at: &Point, robot: Option<&(Pose, &Polyline)>) -> bool {
+    let Some((_, route)) = robot.filter(|_| human.relation == Relation::Aside) else { return true };
+    let on_side = |side| Beside { side, route }.left_m(at) > 0.0;
+    route.project(at).1 >= Side::ASIDE_M && human.side.is_none_or(on_side)
+}
+
 fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
     if let Some(gaze) = human.gaze {
         return gaze.yaw(at);
     }
     let ahead = human.route.direction(0.0);
+    let watched = human.meeting().map(|meeting| meeting.at - at).filter(|way| way.norm() > 1e-6);
+    if let Some(toward) = watched.filter(|_| human.relation == Relation::Aside) {
+        return libm::atan2(toward.y, toward.x);
+    }
     let toward = match door {
         Some(door) => door - at,
         None if ahead.norm() > 0.5 && (human.relation != Relation::Static || !human.doors.is_empty()) => ahead,
@@ -278,7 +291,7 @@ fn stand(
     };
     // Where there is no room for them together each finds a place alone.
     let beside = first.side.zip(route).map(|(side, route)| Beside { side, route });
-    let places = places.or_else(|| formation(&home, (members.len(), beside), body, floor, route, taken));
+    let places = places.or_else(|| formation(&home, (members.len(), beside, first.opens), body, floor, route, taken));
     let Some(places) = places else { return };
     for (member, (at, yaw)) in members.iter().zip(places) {
         if let Some(human) = humans.get_mut(*member) {
@@ -310,7 +323,7 @@ const WIDEST_BESIDE: i32 = 9;
 /// Places and headings of a circle near `home`, or of people who stand together as they can; `None` where there is no room.
 fn formation(
     home: &Point,
-    (count, beside): (usize, Option<Beside<'_>>),
+    (count, beside, opens): (usize, Option<Beside<'_>>, bool),
     body: f64,
     floor: &Floor,
     route: Option<&Polyline>,
@@ -348,8 +361,9 @@ fn formation(
                     continue;
                 }
                 let wide = way_round(floor, &center, ring + body, heading);
-                // A way round is what matters; then near the node and in the robot's line is better.
-                let score = 5.0 * wide - 0.5 * offset.norm() - 0.6 * (offset.perp(&along).abs() - 0.4).max(0.0);
+                // A way round is what matters, but for those who open for the robot; then near the node and in the robot's line is better.
+                let round = if opens { 0.0 } else { 5.0 * wide };
+                let score = round - 0.5 * offset.norm() - 0.6 * (offset.perp(&along).abs() - 0.4).max(0.0);
                 if best.as_ref().is_none_or(|(top, _)| score > *top + 1e-9) {
                     best = Some((score, places));
                 }

@@ -172,7 +172,7 @@ pub(crate) const fn lead_s(relation: Relation, several: bool) -> f64 {
         Relation::Crossing | Relation::Leaving => CROSS_S,
         Relation::Frontal if several => SEVERAL_TOWARD_S,
         Relation::Frontal => TOWARD_S,
-        Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => 0.0,
+        Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast | Relation::Aside => 0.0,
     }
 }
 

@@ -23,6 +23,8 @@ use crate::{meetings, start, turning, walk};
 
 /// Nearer than this to the end of its way the robot is at its goal, m.
 const AT_GOAL_M: f64 = 0.35;
+/// Where somebody stands at its goal the robot has arrived this near to it, m.
+const AROUND_GOAL_M: f64 = 1.4;
 
 /// Keeps a run and hands it on.
 struct Kept<'a> {
@@ -322,8 +324,10 @@ impl Engine {
             let mut there = self.humans.iter().filter(|human| human.present());
             let full = there.any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
             // It may have come there by another way than the intended one; then it says so by resting there.
-            let rests = left < AT_GOAL_M && robot.command.waiting && robot.has_moved;
-            let stands = (rests || full && left < 1.4) && robot.velocity.norm() < 0.05;
+            // A way that ends where it began has led there only once most of it is behind the robot.
+            let led = (robot.route.point(0.0) - end).norm() > AROUND_GOAL_M || robot.s > 0.5 * robot.route.length_m();
+            let rests = led && left < AT_GOAL_M && robot.command.waiting && robot.has_moved;
+            let stands = (rests || led && full && left < AROUND_GOAL_M) && robot.velocity.norm() < 0.05;
             robot.at_full_goal_s = if stands { robot.at_full_goal_s + STEP_SECS } else { 0.0 };
             let near = left < AT_GOAL_M && robot.s > robot.route.length_m() - 1.0;
             if robot.arrived_s.is_none() && (near || robot.at_full_goal_s > 2.0) {

@@ -254,6 +254,7 @@ fn human(
         yaw: facing,
         speed_mps,
         steps: proposal.steps(),
+        opens: proposal.rules.iter().any(|rule| rule.act == socrates_model::Action::MakeRoom),
         ..bare(proposal.id, tree, state, at)
     }
 }
@@ -270,7 +271,7 @@ fn lane_m(proposal: &HumanProposal, sway_m: f64) -> f64 {
         // What is left of the robot is right of those who come towards it.
         Relation::Frontal => left(proposal.side).map_or(sway_m, |left| sway_m - left * Side::BESIDE_M),
         Relation::Behind | Relation::Ahead => left(proposal.side).map_or(sway_m, |left| sway_m + left * Side::BESIDE_M),
-        Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying => sway_m,
+        Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying | Relation::Aside => sway_m,
     }
 }
 
@@ -316,6 +317,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         pace_mps: None,
         diverted: false,
         errand: Errand::default(),
+        opens: false,
         anchor: None,
         aside_m: 0.0,
         jammed_s: 0.0,

@@ -35,6 +35,8 @@ pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor) {
         | Action::FollowHuman(_)
         | Action::RunAway
         | Action::GiveWay
+        | Action::MakeRoom
+        | Action::ApproachTo(_)
         | Action::Block
         | Action::LookAtRobot
         | Action::Approach

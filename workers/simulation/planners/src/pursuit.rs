@@ -19,6 +19,8 @@ const ROUNDING_M: f64 = 0.005;
 const PERSONAL_M: f64 = 0.45;
 /// Gap to somebody who walks that is kept even at a crawl, m.
 const CLOSE_M: f64 = 0.36;
+/// A way that begins and ends this near to one place leads there and back, m.
+const CLOSED_M: f64 = 0.5;
 /// How far ahead in time people are looked at, s.
 const HORIZON_S: f64 = 2.6;
 
@@ -26,7 +28,7 @@ const HORIZON_S: f64 = 2.6;
 pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, robot: &RobotModel) -> Command {
     let at = seen.pose.point();
     let target = way.point(s + LOOK_AHEAD_M);
-    let left = (way.end().unwrap_or(at) - at).norm();
+    let left = left_m(way, &at, s);
     let way_to = target - at;
     let turn = if way_to.norm() > 0.02 { wrap_angle(libm::atan2(way_to.y, way_to.x) - seen.pose.yaw) } else { 0.0 };
     let straight = if turn.abs() > 1.0 { 0.0 } else { 1.0 - 0.8 * turn.abs() };
@@ -34,6 +36,14 @@ pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, 
     let v = (speed * straight).min(libm::sqrt(2.0 * 0.7 * robot.a_max_mps2 * (left - 0.05).max(0.0)));
     let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
     Command { v, omega: if left < 0.08 { 0.0 } else { omega }, gesture: None, waiting: false }
+}
+
+/// How far the end of a way is, m; in the first half of one that ends where it began, so much as is left of it.
+pub(crate) fn left_m(way: &Polyline, at: &Point, s: f64) -> f64 {
+    let end = way.end().unwrap_or(*at);
+    let straight = (end - at).norm();
+    let closed = (way.point(0.0) - end).norm() < CLOSED_M;
+    if closed && s < 0.5 * way.length_m() { straight.max(way.length_m() - s) } else { straight }
 }
 
 /// As [`steer`], without cutting a corner: to the farthest point a little ahead that can be reached straight, and never faster

@@ -9,7 +9,7 @@ use crate::ground::{Ground, closed_door_ahead, obstacles};
 use crate::mission::Mission;
 use crate::overtaking::{self, Overtaking};
 use crate::patience::Patience;
-use crate::pursuit::{beside_people, face, safe_share, somebody_ahead, steer};
+use crate::pursuit::{beside_people, face, left_m, safe_share, somebody_ahead, steer};
 use crate::script::{Script, Wish};
 use crate::waiting::{WaitingSpot, spot};
 
@@ -295,9 +295,8 @@ impl RobotDriver for Reference {
             self.s = s.max(self.s);
         }
         let wish = self.script.step(seen, 1.0 / RATE_HZ);
-        let end = self.route.end().unwrap_or(at);
         let rest = Command { waiting: true, ..Command::default() };
-        if wish.hold || (end - at).norm() < 0.12 {
+        if wish.hold || left_m(&self.route, &at, self.s) < 0.12 {
             return rest;
         }
         if wish.wait_for_leavers

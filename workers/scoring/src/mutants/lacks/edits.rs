@@ -67,6 +67,7 @@ impl<'a> Scene<'a> {
             Predicate::StandsStill { .. } => Some(Action::StandStill),
             Predicate::RunsAway { .. } => Some(Action::RunAway),
             Predicate::GivesWay { .. } => Some(Action::GiveWay),
+            Predicate::MakesRoom { .. } => Some(Action::MakeRoom),
             Predicate::Reacts { act, .. } => Some(act.clone()),
             Predicate::Follows { leader: AgentId::Robot, .. } => Some(Action::FollowRobot),
             Predicate::Follows { leader: AgentId::Human(id), .. } => Some(Action::FollowHuman(*id)),

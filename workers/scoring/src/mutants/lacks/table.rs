@@ -91,6 +91,10 @@ rows! {
         Spoil(&[(Person, LogStands), (Person, LogWalks)]);
     GIVES_WAY "gives_way" PERSON_STOPS, PERSON_ABSENT, Exempt("aside to the other side leaves the line as free"),
         PERSON_TOO_LATE, PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
+    STAYS_ASIDE "stays_aside" STANDING, PERSON_ABSENT, Spoil(&[(Person, OnRobotsWay)]), ALL_THE_TIME, PERSON_SWAPPED,
+        Spoil(&[(Person, WalksToRobot)]);
+    MAKES_ROOM "makes_room" ALL_STAND, PERSON_ABSENT, Exempt("aside to the other side leaves the line as free"), ALL_TOO_LATE,
+        PERSON_SWAPPED, ALL_LOG_STANDS;
     REACTS "reacts" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAway), (Person, TowardsInstead)]), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
     STEP "step" Exempt("many steps are done standing"), PERSON_ABSENT, Exempt("a step may go either way"), PERSON_TOO_LATE,
@@ -190,6 +194,8 @@ pub const fn row(predicate: &Predicate) -> &'static Row {
         Predicate::StandsStill { .. } => &STANDS_STILL,
         Predicate::RunsAway { .. } => &RUNS_AWAY,
         Predicate::GivesWay { .. } => &GIVES_WAY,
+        Predicate::StaysAside { .. } => &STAYS_ASIDE,
+        Predicate::MakesRoom { .. } => &MAKES_ROOM,
         Predicate::Reacts { .. } => &REACTS,
         Predicate::Gestures { .. } => &GESTURES,
         Predicate::Leaves { .. } => &LEAVES,
