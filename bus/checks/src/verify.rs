@@ -103,7 +103,8 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Facing { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
-        | FactKind::RobotSays(_) => true,
+        | FactKind::RobotSays(_)
+        | FactKind::RobotDoes(_) => true,
         FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)
@@ -129,6 +130,7 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::Place(_)
         | FactKind::RobotTask(_)
         | FactKind::RobotSays(_)
+        | FactKind::RobotDoes(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
         | FactKind::RobotAt { .. }

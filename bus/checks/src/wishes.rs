@@ -130,6 +130,10 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 rough(Where::robot("script"), format!("never says {gesture}; it says {}", list(&said)))
             }
         }
+        FactKind::RobotDoes(line) => {
+            let found = proposal.robot.script.contains(line);
+            if found { None } else { rough(Where::robot("script"), format!("has no line for: {}", line.phrase())) }
+        }
         FactKind::RobotStart(class) => {
             let found = proposal.robot.start;
             if found == Some(*class) { None } else { rough(Where::robot("start"), format!("is not `{class}`")) }

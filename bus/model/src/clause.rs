@@ -7,7 +7,7 @@ use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Side, WayPart};
-use crate::rule::{Action, Rule, Trigger};
+use crate::rule::{Action, RobotRule, Rule, Trigger};
 
 /// Whom a clause judges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -241,6 +241,17 @@ pub enum Predicate {
         human: HumanId,
         /// What the step says.
         rule: Rule,
+        /// Largest delay.
+        within_s: f64,
+    },
+    /// The robot does a line of its script, for its reason and not before it. What it says is shown, from within `within_s` of the reason. Where
+    /// it waits, it comes to a stand within `within_s`, having moved in the 5 s before, stands for 60 % of the time or, on at most
+    /// 0.5 m, until the moment comes and goes within 3 s of it, and goes on. Where it waits for those who leave, it enters after
+    /// them. It follows, or goes beside somebody, for 3 s, or passes them. Where it leads, somebody follows it for 3 s, and while it moves no
+    /// follower is 1.5 m farther behind than it allows for more than 3 s.
+    RobotStep {
+        /// The line.
+        rule: RobotRule,
         /// Largest delay.
         within_s: f64,
     },
@@ -491,6 +502,7 @@ impl Predicate {
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
             | Self::RobotWay { .. }
+            | Self::RobotStep { .. }
             | Self::Plausible
             | Self::RobotArrives
             | Self::RobotKeeps { .. }
@@ -551,6 +563,7 @@ impl Predicate {
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
             | Self::RobotWay { .. }
+            | Self::RobotStep { .. }
             | Self::OnTime { .. }
             | Self::Plausible
             | Self::RobotArrives

@@ -8,7 +8,7 @@ use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Relation, Side, WayPart};
-use crate::rule::Rule;
+use crate::rule::{RobotRule, Rule};
 use crate::statement::{Statement, TextKey};
 
 /// One thing that the text asks for.
@@ -120,6 +120,8 @@ pub enum FactKind {
         /// The nodes that the map calls so.
         nodes: Vec<NodeId>,
     },
+    /// The robot does this, as a line of its script.
+    RobotDoes(RobotRule),
     /// The scenario follows this card.
     Pattern(String),
 }

@@ -25,6 +25,7 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::Place(place) => format!("place: {}", place_words(*place)),
         FactKind::RobotTask(task) => format!("task of the robot: {task}"),
         FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),
+        FactKind::RobotDoes(line) => format!("the robot: {}", line.phrase()),
         FactKind::RobotStart(place) => format!("the robot starts at: {}", place_words(*place)),
         FactKind::RobotGoal(place) => format!("the robot goes to: {}", place_words(*place)),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),

@@ -240,6 +240,10 @@ fn of_fact(
             let text = format!("the robot's way {} {name}", part.does());
             list.setup(true, &fact.id, text, Predicate::RobotWay { part: *part, nodes: nodes.clone() });
         }
+        FactKind::RobotDoes(line) => {
+            let text = format!("robot: {}", line.phrase());
+            list.setup(true, &fact.id, text, Predicate::RobotStep { rule: line.clone(), within_s: STEP_S });
+        }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)

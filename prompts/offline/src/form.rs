@@ -11,7 +11,8 @@ use std::collections::BTreeMap;
 use socrates_model::form::{Deed, FacingWord, Form, FormHuman, Formation, PlaceWord, RobotDeed, Step};
 use socrates_model::proposal::Facing;
 use socrates_model::{
-    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Rule, Side, Trigger,
+    Action, FactKind, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Rule, Side,
+    Trigger,
 };
 
 use crate::bind::QUEUES;
@@ -147,7 +148,12 @@ fn bound_to(rule: &Rule, step: &Step, location: &Location) -> Rule {
 
 /// The act as the form writes it.
 fn word(deed: &Deed) -> String {
-    let text = serde_json::to_string(deed).unwrap_or_default();
+    bare(deed)
+}
+
+/// A key and its value as the form writes them.
+fn bare(stated: &impl serde::Serialize) -> String {
+    let text = serde_json::to_string(stated).unwrap_or_default();
     text.replace(['{', '}'], "").replace(':', " = ")
 }
 
@@ -288,6 +294,15 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
             story.robot_says.push((gesture, format!("robot.does: say = \"{gesture}\"")));
         }
     }
+}
+
+/// What a form states besides people and places: the lines of the robot's script.
+pub(crate) fn facts(request: &Request) -> Vec<(String, FactKind)> {
+    let lines = request.robot.does.iter().flat_map(|step| {
+        let rules = request.form.script(std::slice::from_ref(step));
+        rules.into_iter().map(|rule| (format!("robot.does: {}", bare(&step.act)), FactKind::RobotDoes(rule)))
+    });
+    lines.collect()
 }
 
 /// Where the robot goes, unless stated, of which somebody gets through a door before or after it, or waits inside.

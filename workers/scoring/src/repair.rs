@@ -92,6 +92,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::OnSide { .. }
         | Predicate::Faces { .. }
         | Predicate::RobotWay { .. }
+        | Predicate::RobotStep { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }
         | Predicate::Overtakes { .. }

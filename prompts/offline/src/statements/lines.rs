@@ -122,6 +122,7 @@ fn fact_text(kind: &FactKind, location: &Location, quote: &str) -> Option<String
         FactKind::Reacts { .. }
         | FactKind::Relates { .. }
         | FactKind::Gestures { .. }
+        | FactKind::RobotDoes(_)
         | FactKind::RobotTask(_)
         | FactKind::Pattern(_) => return None,
     })

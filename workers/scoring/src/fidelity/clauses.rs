@@ -16,7 +16,7 @@ use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
 use crate::fidelity::{
     acts, addressed, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring, robot,
-    setting, sides, steps, turns,
+    robot_steps, setting, sides, steps, turns,
 };
 use crate::temporal::{Signal, Within};
 use crate::tracks::{TrackFault, Tracks};
@@ -359,6 +359,7 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::TurnsBack { human } => turns::turns_back(signals, *human),
         Predicate::GoesTo { human, nodes } => turns::goes_to(signals, *human, nodes),
         Predicate::ChangesPace { human, mps } => turns::changes_pace(signals, *human, *mps),
+        Predicate::RobotStep { rule, within_s } => robot_steps::robot_step(signals, rule, *within_s),
         Predicate::Step { human, rule, within_s } => steps::step(signals, *human, rule, *within_s),
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
         Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),

@@ -26,6 +26,7 @@ mod plausible;
 mod reactions;
 mod ring;
 mod robot;
+mod robot_steps;
 mod setting;
 mod sides;
 mod signals;

@@ -5,6 +5,7 @@ use socrates_model::{Action, AgentId, AgentState, Clause, Point, Predicate, Rela
 
 use super::Edit;
 use super::edits::{NODE_M, Scene, at_node, leader};
+use super::robot;
 use crate::evidence::Evidence;
 use crate::fidelity::standing_of;
 use crate::mutants::edit::{humans, states, ticks_of, time_of};
@@ -33,6 +34,9 @@ fn stands_beside(scene: &Scene<'_>) -> bool {
 #[expect(clippy::wildcard_enum_match_arm, reason = "few are told apart here; the table has a row for each")]
 pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
     let Some(person) = agents.first().copied() else { return false };
+    if robot::line(scene).is_some_and(|rule| !robot::bites(scene, rule, edit)) {
+        return false;
+    }
     if stands_beside(scene)
         && matches!(edit, Edit::StandsFromStart | Edit::OutOfTime | Edit::Backwards | Edit::LogStands)
     {
@@ -77,7 +81,11 @@ pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
         | Edit::OnRobotsWay
         | Edit::IntoRobot
         | Edit::StandsThere
-        | Edit::SkipsAhead => true,
+        | Edit::SkipsAhead
+        | Edit::SignSooner
+        | Edit::SignLater
+        | Edit::StandsSooner
+        | Edit::SetsOffSooner => true,
     }
 }
 
@@ -258,6 +266,7 @@ fn log_walks(scene: &Scene<'_>, person: AgentId) -> bool {
         // Somebody who walks across the robot's line leaves it.
         Some(Action::GiveWay) => scene.act_s.is_some() && walks_on_line(scene, person),
         Some(_) => false,
+        None if robot::line(scene).is_some() => true,
         None => matches!(scene.predicate, Predicate::RobotObeys { gesture, .. } if !gesture_goes(*gesture)),
     }
 }
