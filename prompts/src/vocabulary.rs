@@ -114,6 +114,8 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         FactKind::Relates { human, relation } => format!("{human}: relation {}", terse::line(&json!(relation))),
         FactKind::Side { human, side } => format!("{human}: side {}", side.name()),
         FactKind::Facing { human, facing } => format!("{human}: faces {}", facing.phrase()),
+        FactKind::Pace { human, mps } => format!("{human}: walks at {mps} m/s"),
+        FactKind::Goal { human, name, .. } => format!("{human}: goes to {name}"),
         FactKind::MeetsTimes { human, times, place } => {
             let place = place.map_or_else(String::new, |class| format!(", at last at {}", class.name()));
             format!("{human}: meets the robot {times} times{place}")
@@ -329,6 +331,8 @@ mod tests {
                 "faces",
                 "robot_way",
                 "robot_step",
+                "walks",
+                "gets_to",
                 "step",
                 "gestures_to",
                 "turns_back",

@@ -187,8 +187,9 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::GesturesTo { .. }
         | Predicate::TurnsBack { .. }
         | Predicate::GoesTo { .. }
+        | Predicate::GetsTo { .. }
         | Predicate::RobotLeavesGroup { .. } => Vec::new(),
-        Predicate::ChangesPace { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
+        Predicate::ChangesPace { mps, .. } | Predicate::Walks { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
     }
 }
 

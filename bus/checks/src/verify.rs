@@ -101,6 +101,8 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_)
@@ -122,6 +124,8 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::GesturesTo { human, .. }
         | FactKind::MeetsTimes { human, .. }
         | FactKind::Side { human, .. }
+        | FactKind::Pace { human, .. }
+        | FactKind::Goal { human, .. }
         | FactKind::Facing { human, .. } => Some(*human),
         FactKind::Humans(_)
         | FactKind::Before { .. }

@@ -64,6 +64,22 @@ pub enum FactKind {
         /// Where.
         facing: Facing,
     },
+    /// A human walks at this pace.
+    Pace {
+        /// Who.
+        human: HumanId,
+        /// The speed, m/s.
+        mps: f64,
+    },
+    /// A human goes to a place.
+    Goal {
+        /// Who.
+        human: HumanId,
+        /// The place in the words of the request.
+        name: String,
+        /// The nodes that the map calls so.
+        nodes: Vec<NodeId>,
+    },
     /// A human meets the robot several times.
     MeetsTimes {
         /// Who.

@@ -10,6 +10,8 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::Humans(count) => format!("{count} humans"),
         FactKind::Group { group, members } => format!("{} are a group ({group})", names(members)),
         FactKind::Reacts { human, rule } => format!("{human} {}", rule_words(rule)),
+        FactKind::Pace { human, mps } => format!("{human} walks at {mps} m/s"),
+        FactKind::Goal { human, name, .. } => format!("{human} goes to {name}"),
         FactKind::MeetsTimes { human, times, place } => {
             let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
             format!("{human} meets the robot {times} times{place}")

@@ -109,6 +109,8 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             | FactKind::MeetsTimes { .. }
             | FactKind::Side { .. }
             | FactKind::Facing { .. }
+            | FactKind::Pace { .. }
+            | FactKind::Goal { .. }
             | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
@@ -137,6 +139,8 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         FactKind::Facing { human, facing } => {
             proposal.human(*human).is_some_and(|human| human.facing.as_ref() == Some(facing))
         }
+        FactKind::Pace { human, mps } => proposal.human(*human).is_some_and(|human| human.speed_mps == Some(*mps)),
+        FactKind::Goal { human, .. } => proposal.human(*human).is_some_and(|human| human.goal.is_some()),
         FactKind::RobotAt { part, nodes, .. } => {
             let clause = Predicate::RobotWay { part: *part, nodes: nodes.clone() };
             proposal.expected_events.iter().any(|other| other.predicate == clause)

@@ -93,6 +93,8 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::Faces { .. }
         | Predicate::RobotWay { .. }
         | Predicate::RobotStep { .. }
+        | Predicate::Walks { .. }
+        | Predicate::GetsTo { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }
         | Predicate::Overtakes { .. }

@@ -67,6 +67,8 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
         | FactKind::Before { .. }
         | FactKind::RobotDoes(_)
         | FactKind::Place(_) => true,
@@ -92,6 +94,8 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
         | FactKind::Before { .. }
         | FactKind::RobotDoes(_) => false,
         FactKind::Group { group, members } => members
@@ -141,6 +145,12 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         }
         Predicate::RobotWay { part, nodes } => {
             matches!(fact, FactKind::RobotAt { part: own, nodes: asked, .. } if (own, asked) == (part, nodes))
+        }
+        Predicate::Walks { human, mps } => {
+            matches!(fact, FactKind::Pace { human: who, mps: asked } if (who, asked) == (human, mps))
+        }
+        Predicate::GetsTo { human, nodes } => {
+            matches!(fact, FactKind::Goal { human: who, nodes: asked, .. } if (who, asked) == (human, nodes))
         }
         Predicate::RobotStep { rule, .. } => matches!(fact, FactKind::RobotDoes(asked) if asked == rule),
         Predicate::Before { first, then, at_door } => {

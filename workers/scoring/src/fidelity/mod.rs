@@ -16,6 +16,7 @@ mod faces;
 mod finding;
 mod follow;
 mod gaps;
+mod going;
 mod groups;
 mod kept;
 mod leaves;

@@ -82,6 +82,7 @@ pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
         | Edit::IntoRobot
         | Edit::StandsThere
         | Edit::SkipsAhead
+        | Edit::HalfPace
         | Edit::SignSooner
         | Edit::SignLater
         | Edit::StandsSooner
@@ -413,6 +414,8 @@ fn told_of(predicate: &Predicate, other: AgentId) -> Option<Predicate> {
         | Predicate::StandsStill { human, .. }
         | Predicate::RunsAway { human, .. }
         | Predicate::GivesWay { human }
+        | Predicate::Walks { human, .. }
+        | Predicate::GetsTo { human, .. }
         | Predicate::Reacts { human, .. }
         | Predicate::Leaves { human, .. }
         | Predicate::StaysInside { human, .. }

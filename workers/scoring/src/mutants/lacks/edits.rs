@@ -12,8 +12,8 @@ use super::robot;
 use crate::evidence::Evidence;
 use crate::mutants::early::seen_ahead;
 use crate::mutants::edit::{
-    beside, delayed, dropped, frozen, gone_from, humans, joined, jumped, reversed, shifted, silenced, stands_at,
-    states, stops_at, straight_on, swapped, ticks_of, time_of, walks_off, walks_to, with_states,
+    beside, delayed, dropped, frozen, gone_from, humans, joined, jumped, reversed, shifted, silenced, slowed,
+    stands_at, states, stops_at, straight_on, swapped, ticks_of, time_of, walks_off, walks_to, with_states,
 };
 
 /// Far away is so far, m.
@@ -232,6 +232,7 @@ pub(super) fn edited(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> Optio
             stands_at(run, person, &at, 0.0)
         }
         Edit::IntoRobot => beside(run, person, AgentId::Robot, 0.0, 0.1),
+        Edit::HalfPace => slowed(run, person),
         Edit::SkipsAhead => jumped(run, person, 3.0)?,
         Edit::SignSooner | Edit::SignLater | Edit::StandsSooner | Edit::SetsOffSooner => robot::edited(scene, edit)?,
     };

@@ -147,6 +147,8 @@ pub(super) enum Edit {
     IntoRobot,
     /// Is 3 s farther on its way from one moment to the next.
     SkipsAhead,
+    /// Goes its way at half the pace.
+    HalfPace,
     /// Makes the sign long before its reason, or long after it.
     SignSooner,
     /// See [`Edit::SignSooner`].

@@ -8,10 +8,10 @@ use super::{Edit, Entry, Row, Whose};
 
 use Edit::{
     AfterRobot, AheadInstead, AlreadyDone, Aside, AtTheSameTime, Backwards, BesideInstead, DoorAtEnd, DoorAtStart,
-    DoorShut, FarAway, Gone, GoneHalfway, IntoRobot, Later, LogAlone, LogStands, LogWalks, OnRobotsWay, OutOfTime,
-    SeenAhead, SetsOffSooner, SignLater, SignSooner, SkipsAhead, Sooner, StandsFromEvidence, StandsFromStart,
-    StandsSooner, StandsThere, Swapped, SwappedMidway, SwappedPair, TowardsInstead, TurnedAbout, TurnedAway, WalksOff,
-    WalksToRobot,
+    DoorShut, FarAway, Gone, GoneHalfway, HalfPace, IntoRobot, Later, LogAlone, LogStands, LogWalks, OnRobotsWay,
+    OutOfTime, SeenAhead, SetsOffSooner, SignLater, SignSooner, SkipsAhead, Sooner, StandsFromEvidence,
+    StandsFromStart, StandsSooner, StandsThere, Swapped, SwappedMidway, SwappedPair, TowardsInstead, TurnedAbout,
+    TurnedAway, WalksOff, WalksToRobot,
 };
 use Entry::{AsFirst, Exempt, Spoil};
 use Whose::{Everybody, LastMember, Leavers, Members, Person, Robot};
@@ -107,6 +107,9 @@ rows! {
         PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     GOES_TO "goes_to" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     CHANGES_PACE "changes_pace" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    WALKS "walks" PERSON_STANDS, PERSON_ABSENT, Exempt("a pace is the same whichever way somebody walks"),
+        Spoil(&[(Person, OutOfTime), (Person, HalfPace)]), PERSON_SWAPPED, PERSON_LOG_STANDS;
+    GETS_TO "gets_to" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     ROBOT_WAY "robot_way" ROBOT_STANDS, Spoil(&[(Robot, FarAway)]), EITHER_WAY, ROBOT_TOO_LATE, ROBOT_ALONE, ROBOT_LOG_STANDS;
     ROBOT_STARTS "robot_starts" Exempt("a robot that stands at its start starts there"), Spoil(&[(Robot, FarAway)]),
         Spoil(&[(Robot, Backwards)]), Exempt("it starts there whenever it sets off"), ROBOT_ALONE, NO_ACT;
@@ -186,6 +189,8 @@ pub const fn row(predicate: &Predicate) -> &'static Row {
         Predicate::TurnsBack { .. } => &TURNS_BACK,
         Predicate::GoesTo { .. } => &GOES_TO,
         Predicate::ChangesPace { .. } => &CHANGES_PACE,
+        Predicate::Walks { .. } => &WALKS,
+        Predicate::GetsTo { .. } => &GETS_TO,
         Predicate::RobotWay { part: WayPart::Start, .. } => &ROBOT_STARTS,
         Predicate::RobotWay { part: WayPart::Avoid, .. } => &ROBOT_AVOIDS,
         Predicate::RobotWay { .. } => &ROBOT_WAY,
