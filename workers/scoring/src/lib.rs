@@ -51,6 +51,8 @@ mod reasons;
 #[cfg(test)]
 mod scenarios;
 #[cfg(test)]
+mod script;
+#[cfg(test)]
 mod signs;
 #[cfg(test)]
 mod steps;
