@@ -221,6 +221,10 @@ fn already_done(scene: &Scene<'_>, person: AgentId) -> bool {
 fn other_way_round(scene: &Scene<'_>, person: AgentId) -> bool {
     match scene.predicate {
         Predicate::HeadOn { .. } => straight_against(scene, person),
+        // Along the robot's way somebody is on the same side of it whichever way they go.
+        Predicate::OnSide { .. } => {
+            matches!(scene.relation(person), Some(Relation::Crossing | Relation::Leaving))
+        }
         Predicate::StartsAt { within_m, .. } => off_named(scene, person, scene.end_s(), within_m + CLEAR_M),
         Predicate::RobotArrives => way_m(scene, AgentId::Robot) >= 1.0,
         Predicate::WalksTogether { .. } => way_m(scene, person) >= 6.0,
