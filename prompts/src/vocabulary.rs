@@ -114,6 +114,8 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         FactKind::Relates { human, relation } => format!("{human}: relation {}", terse::line(&json!(relation))),
         FactKind::Side { human, side } => format!("{human}: side {}", side.name()),
         FactKind::Facing { human, facing } => format!("{human}: faces {}", facing.phrase()),
+        FactKind::Pace { human, mps } => format!("{human}: walks at {mps} m/s"),
+        FactKind::Goal { human, name, .. } => format!("{human}: goes to {name}"),
         FactKind::MeetsTimes { human, times, place } => {
             let place = place.map_or_else(String::new, |class| format!(", at last at {}", class.name()));
             format!("{human}: meets the robot {times} times{place}")
@@ -126,6 +128,7 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         FactKind::Place(class) => format!("place {}", class.name()),
         FactKind::RobotTask(task) => format!("task: {task}"),
         FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),
+        FactKind::RobotDoes(line) => format!("the robot: {}", script_line(line)),
         FactKind::RobotStart(class) => format!("the robot starts at {}", class.name()),
         FactKind::RobotGoal(class) => format!("the robot ends at {}", class.name()),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),
@@ -329,6 +332,9 @@ mod tests {
                 "on_side",
                 "faces",
                 "robot_way",
+                "robot_step",
+                "walks",
+                "gets_to",
                 "step",
                 "gestures_to",
                 "turns_back",

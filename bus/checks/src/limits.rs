@@ -146,7 +146,9 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
             meters("gap_m, largest less smallest,", most - least, (0.0, 3.0)),
         ],
         Predicate::RunsAway { by_m, .. } => vec![meters("by_m", *by_m, (0.3, 10.0))],
-        Predicate::Step { within_s, .. } => vec![secs("within_s", *within_s, (0.1, REACTS_S))],
+        Predicate::Step { within_s, .. } | Predicate::RobotStep { within_s, .. } => {
+            vec![secs("within_s", *within_s, (0.1, REACTS_S))]
+        }
         Predicate::Reacts { human, when, within_s, .. } => {
             let mut found = vec![secs("within_s", *within_s, (0.1, REACTS_S + busy_s(*human, proposal)))];
             found.extend(when.iter().filter_map(Trigger::distance_m).map(|m| meters("when, distance,", m, DISTANCE_M)));
@@ -187,8 +189,9 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::GoesTo { .. }
         | Predicate::StaysAside { .. }
         | Predicate::MakesRoom { .. }
+        | Predicate::GetsTo { .. }
         | Predicate::RobotLeavesGroup { .. } => Vec::new(),
-        Predicate::ChangesPace { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
+        Predicate::ChangesPace { mps, .. } | Predicate::Walks { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
     }
 }
 

@@ -101,9 +101,12 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
-        | FactKind::RobotSays(_) => true,
+        | FactKind::RobotSays(_)
+        | FactKind::RobotDoes(_) => true,
         FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)
@@ -121,6 +124,8 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::GesturesTo { human, .. }
         | FactKind::MeetsTimes { human, .. }
         | FactKind::Side { human, .. }
+        | FactKind::Pace { human, .. }
+        | FactKind::Goal { human, .. }
         | FactKind::Facing { human, .. } => Some(*human),
         FactKind::Humans(_)
         | FactKind::Before { .. }
@@ -129,6 +134,7 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::Place(_)
         | FactKind::RobotTask(_)
         | FactKind::RobotSays(_)
+        | FactKind::RobotDoes(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
         | FactKind::RobotAt { .. }

@@ -130,6 +130,19 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 rough(Where::robot("script"), format!("never says {gesture}; it says {}", list(&said)))
             }
         }
+        FactKind::Pace { human, mps } => {
+            let found = proposal.human(*human)?.speed_mps;
+            let told = found.map_or_else(|| "has no pace".to_owned(), |found| format!("walks at {found} m/s"));
+            if found == Some(*mps) { None } else { rough((*human).into(), format!("{told}, asked for were {mps} m/s")) }
+        }
+        FactKind::Goal { human, name, .. } => {
+            let found = proposal.human(*human)?.goal.is_some();
+            if found { None } else { rough((*human).into(), format!("does not go to {name}")) }
+        }
+        FactKind::RobotDoes(line) => {
+            let found = proposal.robot.script.contains(line);
+            if found { None } else { rough(Where::robot("script"), format!("has no line for: {}", line.phrase())) }
+        }
         FactKind::RobotStart(class) => {
             let found = proposal.robot.start;
             if found == Some(*class) { None } else { rough(Where::robot("start"), format!("is not `{class}`")) }

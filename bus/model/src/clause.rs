@@ -7,7 +7,9 @@ use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Side, WayPart};
-use crate::rule::{Action, Rule, Trigger};
+use crate::rule::{Action, RobotRule, Rule, Trigger};
+
+mod about;
 
 /// Whom a clause judges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -244,6 +246,17 @@ pub enum Predicate {
         /// Largest delay.
         within_s: f64,
     },
+    /// The robot does a line of its script, for its reason and not before it. What it says is shown, from within `within_s` of the reason. Where
+    /// it waits, it comes to a stand within `within_s`, having moved in the 5 s before, stands for 60 % of the time or, on at most
+    /// 0.5 m, until the moment comes and goes within 3 s of it, and goes on. Where it waits for those who leave, it enters after
+    /// them. It follows, or goes beside somebody, for 3 s, or passes them. Where it leads, somebody follows it for 3 s, and while it moves no
+    /// follower is 1.5 m farther behind than it allows for more than 3 s.
+    RobotStep {
+        /// The line.
+        rule: RobotRule,
+        /// Largest delay.
+        within_s: f64,
+    },
     /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m. What the log tells counts where the states
     /// show it within 0.25 s.
     Gestures {
@@ -267,7 +280,8 @@ pub enum Predicate {
         /// Who.
         human: HumanId,
     },
-    /// After the reason for it the human comes within 1 m of one of the nodes, from farther away.
+    /// After the reason for it the human comes within 1 m of one of the nodes, from 2 m and more away
+    /// as they begin.
     GoesTo {
         /// Who.
         human: HumanId,
@@ -292,6 +306,24 @@ pub enum Predicate {
     MakesRoom {
         /// Who.
         human: HumanId,
+    },
+    /// The human walks at this speed before the first act that changes how they go: the largest mean over 2 s of walking without a
+    /// break is within 15 % of it. Of somebody whose acts leave no such time before them, the time between and after them counts, up to
+    /// where they change their pace.
+    Walks {
+        /// Who.
+        human: HumanId,
+        /// The speed, m/s.
+        mps: f64,
+    },
+    /// The human goes to one of the nodes, which their planned way ends at: they start 2.5 m and more away from it, and end within
+    /// 1.5 m of it, or in its room or car. Where the run ends first, they are on their way (2 m to either side), get on by 0.2 m in its last 2 s,
+    /// and have half of the way at most before them that they had as the robot was nearest.
+    GetsTo {
+        /// Who.
+        human: HumanId,
+        /// The nodes of the place.
+        nodes: Vec<NodeId>,
     },
     /// The human starts inside the door and crosses its line outward exactly once.
     Leaves {
@@ -447,159 +479,4 @@ pub enum Predicate {
         /// Largest delay.
         within_s: f64,
     },
-}
-
-impl Predicate {
-    /// The human the clause is about, if it is about one.
-    #[must_use]
-    pub const fn human(&self) -> Option<HumanId> {
-        match self {
-            Self::Meets { human, .. }
-            | Self::MeetsAgain { human, .. }
-            | Self::HeadOn { human }
-            | Self::Crosses { human, .. }
-            | Self::OnSide { human, .. }
-            | Self::Faces { human, .. }
-            | Self::Ahead { human, .. }
-            | Self::Overtakes { human }
-            | Self::RobotPasses { human }
-            | Self::Abreast { human, .. }
-            | Self::Parallel { human, .. }
-            | Self::Blocks { human, .. }
-            | Self::Looks { human, .. }
-            | Self::StandsStill { human, .. }
-            | Self::RunsAway { human, .. }
-            | Self::GivesWay { human }
-            | Self::Reacts { human, .. }
-            | Self::Step { human, .. }
-            | Self::GesturesTo { human, .. }
-            | Self::TurnsBack { human }
-            | Self::GoesTo { human, .. }
-            | Self::ChangesPace { human, .. }
-            | Self::StaysAside { human }
-            | Self::MakesRoom { human }
-            | Self::Leaves { human, .. }
-            | Self::StaysInside { human, .. }
-            | Self::Enters { human, .. }
-            | Self::OnTime { human, .. }
-            | Self::HiddenUntil { human, .. } => Some(*human),
-            Self::Follows { follower: AgentId::Human(human), .. }
-            | Self::Gestures { agent: AgentId::Human(human), .. }
-            | Self::StartsAt { agent: AgentId::Human(human), .. }
-            | Self::Reaches { agent: AgentId::Human(human), .. } => Some(*human),
-            Self::Follows { leader: AgentId::Human(human), .. } => Some(*human),
-            Self::Humans { .. }
-            | Self::Flow { .. }
-            | Self::Density { .. }
-            | Self::Surrounds { .. }
-            | Self::Converges { .. }
-            | Self::Follows { .. }
-            | Self::Gestures { .. }
-            | Self::DoorOpens { .. }
-            | Self::Formation { .. }
-            | Self::WalksTogether { .. }
-            | Self::Queues { .. }
-            | Self::Order { .. }
-            | Self::Before { .. }
-            | Self::EncounterAt { .. }
-            | Self::Reaches { .. }
-            | Self::StartsAt { .. }
-            | Self::RobotWay { .. }
-            | Self::Plausible
-            | Self::RobotArrives
-            | Self::RobotKeeps { .. }
-            | Self::RobotEntersLast
-            | Self::RobotLeavesFirst
-            | Self::RobotJoins { .. }
-            | Self::RobotLeavesGroup { .. }
-            | Self::RobotObeys { .. } => None,
-        }
-    }
-
-    /// The group the clause is about, if it is about one.
-    #[must_use]
-    pub const fn group(&self) -> Option<GroupId> {
-        match self {
-            Self::Formation { group, .. }
-            | Self::WalksTogether { group, .. }
-            | Self::Queues { group, .. }
-            | Self::RobotJoins { group }
-            | Self::RobotLeavesGroup { group } => Some(*group),
-            Self::Humans { .. }
-            | Self::Meets { .. }
-            | Self::MeetsAgain { .. }
-            | Self::HeadOn { .. }
-            | Self::Crosses { .. }
-            | Self::OnSide { .. }
-            | Self::Faces { .. }
-            | Self::Ahead { .. }
-            | Self::Overtakes { .. }
-            | Self::RobotPasses { .. }
-            | Self::Follows { .. }
-            | Self::Abreast { .. }
-            | Self::Parallel { .. }
-            | Self::Flow { .. }
-            | Self::Density { .. }
-            | Self::Surrounds { .. }
-            | Self::Converges { .. }
-            | Self::Blocks { .. }
-            | Self::Looks { .. }
-            | Self::StandsStill { .. }
-            | Self::RunsAway { .. }
-            | Self::GivesWay { .. }
-            | Self::Reacts { .. }
-            | Self::Step { .. }
-            | Self::GesturesTo { .. }
-            | Self::TurnsBack { .. }
-            | Self::GoesTo { .. }
-            | Self::ChangesPace { .. }
-            | Self::StaysAside { .. }
-            | Self::MakesRoom { .. }
-            | Self::Gestures { .. }
-            | Self::Leaves { .. }
-            | Self::StaysInside { .. }
-            | Self::Enters { .. }
-            | Self::DoorOpens { .. }
-            | Self::HiddenUntil { .. }
-            | Self::Order { .. }
-            | Self::Before { .. }
-            | Self::EncounterAt { .. }
-            | Self::Reaches { .. }
-            | Self::StartsAt { .. }
-            | Self::RobotWay { .. }
-            | Self::OnTime { .. }
-            | Self::Plausible
-            | Self::RobotArrives
-            | Self::RobotKeeps { .. }
-            | Self::RobotEntersLast
-            | Self::RobotLeavesFirst
-            | Self::RobotObeys { .. } => None,
-        }
-    }
-
-    /// Whether it judges what the robot makes of the scenario, and so can only be an outcome.
-    #[must_use]
-    pub const fn judges_robot(&self) -> bool {
-        matches!(
-            self,
-            Self::RobotArrives
-                | Self::RobotKeeps { .. }
-                | Self::RobotEntersLast
-                | Self::RobotLeavesFirst
-                | Self::RobotJoins { .. }
-                | Self::RobotLeavesGroup { .. }
-                | Self::RobotObeys { .. }
-        )
-    }
-
-    /// Whether the clause tells of every human when there are `humans` of them: it names nobody, and none of them
-    /// can be missing from what it counts.
-    #[must_use]
-    pub const fn takes_in_all(&self, humans: u32) -> bool {
-        if let Self::Flow { count, .. } | Self::Surrounds { count, .. } = self {
-            *count >= humans
-        } else {
-            matches!(self, Self::Converges { .. })
-        }
-    }
 }

@@ -8,7 +8,7 @@ use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Relation, Side, WayPart};
-use crate::rule::Rule;
+use crate::rule::{RobotRule, Rule};
 use crate::statement::{Statement, TextKey};
 
 /// One thing that the text asks for.
@@ -63,6 +63,22 @@ pub enum FactKind {
         human: HumanId,
         /// Where.
         facing: Facing,
+    },
+    /// A human walks at this pace.
+    Pace {
+        /// Who.
+        human: HumanId,
+        /// The speed, m/s.
+        mps: f64,
+    },
+    /// A human goes to a place.
+    Goal {
+        /// Who.
+        human: HumanId,
+        /// The place in the words of the request.
+        name: String,
+        /// The nodes that the map calls so.
+        nodes: Vec<NodeId>,
     },
     /// A human meets the robot several times.
     MeetsTimes {
@@ -120,6 +136,8 @@ pub enum FactKind {
         /// The nodes that the map calls so.
         nodes: Vec<NodeId>,
     },
+    /// The robot does this, as a line of its script.
+    RobotDoes(RobotRule),
     /// The scenario follows this card.
     Pattern(String),
 }

@@ -10,6 +10,8 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::Humans(count) => format!("{count} humans"),
         FactKind::Group { group, members } => format!("{} are a group ({group})", names(members)),
         FactKind::Reacts { human, rule } => format!("{human} {}", rule_words(rule)),
+        FactKind::Pace { human, mps } => format!("{human} walks at {mps} m/s"),
+        FactKind::Goal { human, name, .. } => format!("{human} goes to {name}"),
         FactKind::MeetsTimes { human, times, place } => {
             let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
             format!("{human} meets the robot {times} times{place}")
@@ -25,6 +27,7 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::Place(place) => format!("place: {}", place_words(*place)),
         FactKind::RobotTask(task) => format!("task of the robot: {task}"),
         FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),
+        FactKind::RobotDoes(line) => format!("the robot: {}", line.phrase()),
         FactKind::RobotStart(place) => format!("the robot starts at: {}", place_words(*place)),
         FactKind::RobotGoal(place) => format!("the robot goes to: {}", place_words(*place)),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),

@@ -71,6 +71,10 @@ pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) 
     proposal.expected_events.retain(|clause| {
         !matches!(clause.predicate, Predicate::Gestures { agent: socrates_model::AgentId::Robot, gesture } if !says.contains(&gesture))
     });
+    let script = proposal.robot.script.clone();
+    proposal
+        .expected_events
+        .retain(|clause| !matches!(&clause.predicate, Predicate::RobotStep { rule, .. } if !script.contains(rule)));
     // An order of clauses of which one is gone orders nothing.
     let ids: Vec<String> = proposal.expected_events.iter().map(|clause| clause.id.clone()).collect();
     proposal.expected_events.retain(|clause| {
@@ -105,9 +109,12 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             | FactKind::MeetsTimes { .. }
             | FactKind::Side { .. }
             | FactKind::Facing { .. }
+            | FactKind::Pace { .. }
+            | FactKind::Goal { .. }
             | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
+            | FactKind::RobotDoes(_)
             | FactKind::RobotStart(_)
             | FactKind::RobotGoal(_)
             | FactKind::RobotAt { .. }
@@ -127,10 +134,13 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             proposal.expected_events.iter().any(|other| other.predicate == clause)
         }
         FactKind::RobotSays(gesture) => says(*gesture),
+        FactKind::RobotDoes(line) => proposal.robot.script.contains(line),
         FactKind::Side { human, side } => proposal.human(*human).is_some_and(|human| human.side == Some(*side)),
         FactKind::Facing { human, facing } => {
             proposal.human(*human).is_some_and(|human| human.facing.as_ref() == Some(facing))
         }
+        FactKind::Pace { human, mps } => proposal.human(*human).is_some_and(|human| human.speed_mps == Some(*mps)),
+        FactKind::Goal { human, .. } => proposal.human(*human).is_some_and(|human| human.goal.is_some()),
         FactKind::RobotAt { part, nodes, .. } => {
             let clause = Predicate::RobotWay { part: *part, nodes: nodes.clone() };
             proposal.expected_events.iter().any(|other| other.predicate == clause)

@@ -147,6 +147,8 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
         | FactKind::MeetsTimes { human: who, .. }
         | FactKind::Side { human: who, .. }
         | FactKind::Facing { human: who, .. }
+        | FactKind::Pace { human: who, .. }
+        | FactKind::Goal { human: who, .. }
         | FactKind::Relates { human: who, .. } = &fact.kind
         {
             *who == human.id
@@ -242,6 +244,18 @@ fn of_fact(
         FactKind::RobotAt { part, name, nodes } => {
             let text = format!("the robot's way {} {name}", part.does());
             list.setup(true, &fact.id, text, Predicate::RobotWay { part: *part, nodes: nodes.clone() });
+        }
+        FactKind::Pace { human, mps } => {
+            let text = format!("{human} walks at {mps} m/s");
+            list.setup(true, &fact.id, text, Predicate::Walks { human: *human, mps: *mps });
+        }
+        FactKind::Goal { human, name, nodes } => {
+            let text = format!("{human} goes to {name}");
+            list.setup(true, &fact.id, text, Predicate::GetsTo { human: *human, nodes: nodes.clone() });
+        }
+        FactKind::RobotDoes(line) => {
+            let text = format!("robot: {}", line.phrase());
+            list.setup(true, &fact.id, text, Predicate::RobotStep { rule: line.clone(), within_s: STEP_S });
         }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)

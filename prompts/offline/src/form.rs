@@ -11,7 +11,8 @@ use std::collections::BTreeMap;
 use socrates_model::form::{Deed, FacingWord, Form, FormHuman, Formation, PlaceWord, RobotDeed, Step};
 use socrates_model::proposal::Facing;
 use socrates_model::{
-    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Rule, Side, Trigger,
+    Action, FactKind, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Rule, Side,
+    Trigger,
 };
 
 use crate::bind::QUEUES;
@@ -147,7 +148,12 @@ fn bound_to(rule: &Rule, step: &Step, location: &Location) -> Rule {
 
 /// The act as the form writes it.
 fn word(deed: &Deed) -> String {
-    let text = serde_json::to_string(deed).unwrap_or_default();
+    bare(deed)
+}
+
+/// A key and its value as the form writes them.
+fn bare(stated: &impl serde::Serialize) -> String {
+    let text = serde_json::to_string(stated).unwrap_or_default();
     text.replace(['{', '}'], "").replace(':', " = ")
 }
 
@@ -289,6 +295,43 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
             story.robot_says.push((gesture, format!("robot.does: say = \"{gesture}\"")));
         }
     }
+}
+
+/// What a form states besides who is there and what they do: paces and goals of people, and the lines of the robot's script.
+pub(crate) fn facts(request: &Request, location: &Location) -> Vec<(String, FactKind)> {
+    let mut found = Vec::new();
+    for person in request.form.people() {
+        let (human, id) = (person.human, person.id);
+        let name = human.id.clone().unwrap_or_else(|| id.to_string());
+        let pace = human.pace.filter(|_| walks(human.relation, &person.rules));
+        if let Some(mps) = pace.and_then(socrates_model::form::Pace::mps) {
+            found.push((format!("human {name}: pace = {mps} m/s"), FactKind::Pace { human: id, mps }));
+        }
+        let goal = human.goal.as_ref().and_then(|goal| Some((goal, bound(goal, location)?)));
+        if let Some((goal, place)) = goal {
+            let nodes = if place.nodes.is_empty() {
+                socrates_maps::place::nodes_of(location, place.class)
+            } else {
+                place.nodes
+            };
+            let kind = FactKind::Goal { human: id, name: goal.to_string(), nodes };
+            found.push((format!("human {name}: goal = \"{goal}\""), kind));
+        }
+    }
+    let lines = request.robot.does.iter().flat_map(|step| {
+        let rules = request.form.script(std::slice::from_ref(step));
+        rules.into_iter().map(|rule| (format!("robot.does: {}", bare(&step.act)), FactKind::RobotDoes(rule)))
+    });
+    found.extend(lines);
+    found
+}
+
+/// Whether somebody walks their own way at some time, and not only after somebody else.
+fn walks(relation: Relation, rules: &[Rule]) -> bool {
+    let follows = |rule: &Rule| {
+        rule.when == [Trigger::Always] && matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_))
+    };
+    !matches!(relation, Relation::Static | Relation::Staying) && !rules.iter().any(follows)
 }
 
 /// Where the robot goes, unless stated, of which somebody gets through a door before or after it, or waits inside.

@@ -252,15 +252,16 @@ fn robot(
     // The robot's part of a form is what the form states.
     let of_card = found.filter(|_| request.form.is_empty());
     let mut script: Vec<RobotRule> = of_card.map(|card| card.script.clone()).unwrap_or_default();
-    let stated = request.form.script(&request.robot.does);
-    let is_stated = |gesture| stated.iter().any(|line| line.act == RobotDo::Say(gesture));
-    script.extend(stated.iter().cloned());
     let lead = humans.iter().find(|human| human.relation == Relation::Ahead).map(|human| human.id);
     for line in &mut script {
         if let (RobotDo::Follow(who) | RobotDo::Overtake(who), Some(id)) = (&mut line.act, lead) {
             *who = id;
         }
     }
+    // A line of the form names whom it means.
+    let stated = request.form.script(&request.robot.does);
+    let is_stated = |gesture| stated.iter().any(|line| line.act == RobotDo::Say(gesture));
+    script.extend(stated.iter().cloned());
     let beside: Vec<HumanId> =
         humans.iter().filter(|human| human.relation == Relation::Abreast).map(|human| human.id).collect();
     script.extend(beside.first().map(|id| RobotRule { when: RobotWhen::Start, act: RobotDo::Abreast(*id) }));

@@ -362,6 +362,7 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
     for (gesture, quote) in &story.robot_says {
         facts.push((quote.clone(), FactKind::RobotSays(*gesture)));
     }
+    facts.extend(form::facts(request, location));
     for (class, quote) in story.robot_leaves.iter().chain(&task.start).take(1) {
         facts.push((quote.clone(), FactKind::RobotStart(*class)));
     }

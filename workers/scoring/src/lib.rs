@@ -53,6 +53,8 @@ mod room;
 #[cfg(test)]
 mod scenarios;
 #[cfg(test)]
+mod script;
+#[cfg(test)]
 mod signs;
 #[cfg(test)]
 mod steps;

@@ -95,6 +95,9 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::OnSide { .. }
         | Predicate::Faces { .. }
         | Predicate::RobotWay { .. }
+        | Predicate::RobotStep { .. }
+        | Predicate::Walks { .. }
+        | Predicate::GetsTo { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }
         | Predicate::Overtakes { .. }

@@ -110,10 +110,16 @@ fn going_to_a_place_is_getting_there() {
     let nodes = vec![crate::fixture::node("m")];
     let act = Action::GoTo { place: "corridor".into(), nodes: nodes.clone() };
     let case = case(step(act), Predicate::GoesTo { human: H1, nodes });
+    // 1.8 m away from it they begin to go there.
+    let me = Walk::human_through(1, &[(0., 8., 0.9), (6., 1.6, 0.9), (9., 0.3, 0.4), (20., 0.3, 0.4)]);
+    let other = Walk::human(2, 7., -1.1, 0., 0.).leaf(0.0, WALKS);
+    let near_already =
+        recording(&[Walk::robot(-8., -0.5, 0.4, 0.), me.leaf(0.0, WALKS).leaf(6.0, GOES), other], 20.0, 0.01);
     for (what, run, wanted) in [
         ("gets there", walks(GOES, &[(9., 0.3, 0.4), (20., 0.3, 0.4)]), Standing::Holds),
         ("stands", walks(GOES, &[(20., 2., 0.9)]), Standing::Fails),
         ("walks back", walks(GOES, &[(12., 8., 0.9)]), Standing::Fails),
+        ("is nearly there already", near_already, Standing::Fails),
     ] {
         let clause = found(&case, &run);
         assert_eq!(clause.standing, wanted, "{what}: {}", clause.evidence);

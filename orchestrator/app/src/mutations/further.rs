@@ -1,7 +1,7 @@
 //! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
 
 /// Every one.
-pub(super) const FURTHER: [(&str, &str); 15] = [
+pub(super) const FURTHER: [(&str, &str); 26] = [
     (
         "meets twice",
         r#"location = "office"
@@ -206,6 +206,166 @@ avoid = "ward 1"
 [[human]]
 relation = "static"
 place = "corridor"
+"#,
+    ),
+    (
+        "the robot asks, and waits",
+        r#"location = "office"
+task = "Deliver mail"
+
+[[human]]
+id = "colleague"
+relation = "frontal"
+place = "corridor"
+pace = 1.0
+
+[robot]
+does = [{ when = { human_near = 4.0 }, say = "EXCUSE_ME" }, { when = { after_secs = 5.0 }, hold_s = 3 }]
+"#,
+    ),
+    (
+        "the robot waits until it may go",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+id = "guard"
+relation = "static"
+place = "corridor"
+does = [
+  { when = { robot_near = 4.0 }, say = "WAIT", for_s = 4 },
+  { when = { done = "visitor" }, say = "PROCEED" },
+]
+
+[[human]]
+id = "visitor"
+relation = "crossing"
+
+[robot]
+does = [{ when = { human_says = "WAIT" }, hold_until = { human_says = "PROCEED" } }]
+"#,
+    ),
+    (
+        "the robot waits where they meet",
+        r#"location = "warehouse"
+task = "Carry a box"
+
+[[human]]
+id = "picker"
+relation = "crossing"
+
+[robot]
+does = [{ when = { at_encounter = "picker" }, hold_s = 5 }]
+"#,
+    ),
+    (
+        "the robot lets people out",
+        r#"location = "hospital"
+task = "Take the elevator to another floor"
+
+[[human]]
+count = 2
+relation = "leaving"
+place = "elevator"
+
+[robot]
+goal = "elevator"
+does = [{ wait_for_leavers = true }]
+"#,
+    ),
+    (
+        "the robot follows",
+        r#"location = "office"
+task = "Go to the meeting room"
+
+[[human]]
+id = "guide"
+relation = "ahead"
+pace = "slow"
+
+[robot]
+does = [{ follow = "guide" }]
+"#,
+    ),
+    (
+        "the robot goes beside somebody",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+id = "nurse"
+relation = "abreast"
+
+[robot]
+does = [{ beside = "nurse" }]
+"#,
+    ),
+    (
+        "the robot overtakes",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+id = "patient"
+relation = "ahead"
+pace = 0.4
+
+[robot]
+does = [{ overtake = "patient" }]
+"#,
+    ),
+    (
+        "the robot leads",
+        r#"location = "office"
+task = "Guide the visitor"
+
+[[human]]
+id = "visitor"
+relation = "behind"
+does = [{ when = { robot_says = "FOLLOW_ME" }, act = "follow_robot" }]
+
+[robot]
+does = [{ say = "FOLLOW_ME" }, { lead_m = 3.0 }]
+"#,
+    ),
+    (
+        "goes into a room",
+        r#"location = "office"
+task = "Leave the kitchen"
+
+[[human]]
+relation = "frontal"
+place = "corridor"
+goal = "room"
+pace = 1.0
+
+[robot]
+start = "kitchen"
+"#,
+    ),
+    (
+        "looks, and turns back",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+relation = "frontal"
+place = "corridor"
+does = [{ when = { robot_near = 4.0 }, act = "look_at_robot", for_s = 2 }, { act = "turn_back" }]
+"#,
+    ),
+    (
+        "goes into the elevator",
+        r#"location = "hospital"
+task = "Take the elevator"
+
+[[human]]
+relation = "static"
+place = "elevator_lobby"
+goal = "elevator"
+
+[robot]
+goal = "elevator"
 "#,
     ),
 ];

@@ -122,6 +122,9 @@ fn fact_text(kind: &FactKind, location: &Location, quote: &str) -> Option<String
         FactKind::Reacts { .. }
         | FactKind::Relates { .. }
         | FactKind::Gestures { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
+        | FactKind::RobotDoes(_)
         | FactKind::RobotTask(_)
         | FactKind::Pattern(_) => return None,
     })

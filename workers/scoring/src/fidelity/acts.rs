@@ -433,10 +433,14 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
             most(Vector::new(-facing.y, facing.x), true) >= GOES_M
         }
         Action::TurnBack | Action::GoTo { .. } => way_m() >= GOES_M,
+        // Somebody who stands there facing the robot all the time has not looked up. By their tree they turn however little.
+        Action::LookAtRobot => {
+            let turned_rad = if signals.tells_leaves { TURNED_LITTLE_RAD } else { TURNED_RAD };
+            stops_or_turns(signals, human, (from, to), turned_rad)
+        }
         Action::Navigate
         | Action::StandStill
         | Action::Block
-        | Action::LookAtRobot
         | Action::LookAt(_)
         | Action::ChangePace { .. }
         // Of a group that makes room some stand beside the line already: the clause of the act says that somebody of it goes.

@@ -15,8 +15,8 @@ use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
 use crate::fidelity::{
-    acts, addressed, aside, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring,
-    robot, setting, sides, steps, turns,
+    acts, addressed, aside, company, coverage, crowd, doorway, faces, going, groups, meeting, named_way, reactions,
+    ring, robot, robot_steps, setting, sides, steps, turns,
 };
 use crate::temporal::{Signal, Within};
 use crate::tracks::{TrackFault, Tracks};
@@ -366,7 +366,10 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::GoesTo { human, nodes } => turns::goes_to(signals, *human, nodes),
         Predicate::StaysAside { human } => aside::stays_aside(signals, *human),
         Predicate::MakesRoom { human } => aside::makes_room(signals, *human),
+        Predicate::Walks { human, mps } => going::walks(signals, *human, *mps),
+        Predicate::GetsTo { human, nodes } => going::gets_to(signals, *human, nodes),
         Predicate::ChangesPace { human, mps } => turns::changes_pace(signals, *human, *mps),
+        Predicate::RobotStep { rule, within_s } => robot_steps::robot_step(signals, rule, *within_s),
         Predicate::Step { human, rule, within_s } => steps::step(signals, *human, rule, *within_s),
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
         Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),

@@ -45,6 +45,17 @@ pub(super) fn follows(
     gap_m: [f64; 2],
     for_s: f64,
 ) -> Finding {
+    follows_since(signals, (follower, leader), gap_m, for_s, f64::NEG_INFINITY)
+}
+
+/// The same from a time on.
+pub(super) fn follows_since(
+    signals: &Signals<'_>,
+    (follower, leader): (AgentId, AgentId),
+    gap_m: [f64; 2],
+    for_s: f64,
+    since_s: f64,
+) -> Finding {
     let missing = |agent: AgentId| match agent {
         AgentId::Robot => Finding::not_applicable("there is no robot in the recording"),
         AgentId::Human(id) => Finding::fails(-1.0, vec![], format!("{id} is not in the recording")),
@@ -56,7 +67,7 @@ pub(super) fn follows(
         Err(never) => return never,
     };
     let mut gaps = gaps(lead, behind);
-    gaps.retain(|gap| from.counts(gap.t));
+    gaps.retain(|gap| from.counts(gap.t) && gap.t >= since_s);
     let marks = follow_marks(&gaps, gap_m);
     let [low, high] = gap_m;
     let what = format!("{follower} behind {leader} with a gap of {low:.1} to {high:.1} m for {for_s:.1} s");
@@ -91,6 +102,11 @@ pub(super) fn follows(
 
 /// Human and robot go side by side for some time.
 pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
+    abreast_since(signals, human, for_s, f64::NEG_INFINITY)
+}
+
+/// The same from a time on.
+pub(super) fn abreast_since(signals: &Signals<'_>, human: HumanId, for_s: f64, since_s: f64) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
     }
@@ -98,6 +114,7 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
     let marks: Vec<Mark> = signals
         .of(human)
         .iter()
+        .filter(|moment| moment.t >= since_s)
         .map(|moment| {
             let arc_m = together.to(moment.robot.at, moment.human.at);
             let aside = FRAC_PI_4 - (moment.robot.bearing(&moment.human.at).abs() - FRAC_PI_2).abs();

@@ -67,7 +67,10 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
         | FactKind::Before { .. }
+        | FactKind::RobotDoes(_)
         | FactKind::Place(_) => true,
         FactKind::Humans(_)
         | FactKind::Relates { .. }
@@ -88,9 +91,13 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::GesturesTo { human, .. } => {
             named && about(clause, *human, None, u32::MAX)
         }
-        FactKind::MeetsTimes { .. } | FactKind::Side { .. } | FactKind::Facing { .. } | FactKind::Before { .. } => {
-            false
-        }
+        FactKind::MeetsTimes { .. }
+        | FactKind::Side { .. }
+        | FactKind::Facing { .. }
+        | FactKind::Pace { .. }
+        | FactKind::Goal { .. }
+        | FactKind::Before { .. }
+        | FactKind::RobotDoes(_) => false,
         FactKind::Group { group, members } => members
             .first()
             .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
@@ -139,6 +146,13 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         Predicate::RobotWay { part, nodes } => {
             matches!(fact, FactKind::RobotAt { part: own, nodes: asked, .. } if (own, asked) == (part, nodes))
         }
+        Predicate::Walks { human, mps } => {
+            matches!(fact, FactKind::Pace { human: who, mps: asked } if (who, asked) == (human, mps))
+        }
+        Predicate::GetsTo { human, nodes } => {
+            matches!(fact, FactKind::Goal { human: who, nodes: asked, .. } if (who, asked) == (human, nodes))
+        }
+        Predicate::RobotStep { rule, .. } => matches!(fact, FactKind::RobotDoes(asked) if asked == rule),
         Predicate::Before { first, then, at_door } => {
             matches!(fact, FactKind::Before { first: one, then: other, at_door: door } if (one, other, door) == (first, then, at_door))
         }

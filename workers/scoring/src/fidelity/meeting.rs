@@ -337,10 +337,16 @@ pub(super) fn lasting(
 /// One goes from behind the other to ahead of it, close by. `overtakes`: the human passes the robot
 /// the same way; else the robot passes the human.
 pub(super) fn passes(signals: &Signals<'_>, human: HumanId, overtakes: bool) -> Finding {
+    passes_since(signals, human, overtakes, f64::NEG_INFINITY)
+}
+
+/// The same from a time on.
+pub(super) fn passes_since(signals: &Signals<'_>, human: HumanId, overtakes: bool, since_s: f64) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let moments = signals.of(human);
+    let all = signals.of(human);
+    let moments = all.get(all.partition_point(|moment| moment.t < since_s)..).unwrap_or_default();
     let near: Vec<&Moment> = moments.iter().filter(|moment| moment.distance_m <= PASS_M).collect();
     let Some(nearest) = closest(moments) else { return Finding::not_applicable("the recording is empty") };
     if near.is_empty() {

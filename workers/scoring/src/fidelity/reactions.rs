@@ -21,7 +21,7 @@ const IN_WAY_RAD: f64 = 0.5;
 const AT_ENCOUNTER_M: f64 = 1.0;
 const AT_GOAL_M: f64 = 0.6;
 /// How much farther than its stated distance a trigger may be and still not be early, m.
-const EARLY_M: f64 = 0.3;
+pub(super) const EARLY_M: f64 = 0.3;
 /// How much sooner than its trigger an action may start, s: a tree reads the tick before.
 pub(super) const EARLY_SECS: f64 = 0.3;
 /// How much sooner than after what comes before it a gesture may be made, s.

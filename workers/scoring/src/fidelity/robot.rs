@@ -13,11 +13,11 @@ use crate::tracks::{MOVING_MPS, Track};
 pub const GOAL_M: f64 = 0.5;
 
 /// A robot that says it has arrived is at most this far from its goal, m: it may wait short of it where somebody stands there.
-const ARRIVED_M: f64 = 1.5;
+pub(super) const ARRIVED_M: f64 = 1.5;
 /// A robot that has stood for longer than this before a gesture does not stop because of it, s.
-const MOVED_SECS: f64 = 5.0;
+pub(super) const MOVED_SECS: f64 = 5.0;
 /// A robot that was told to wait has set off where it has gone farther than this since it stood, m.
-const CREEPS_M: f64 = 0.5;
+pub(super) const CREEPS_M: f64 = 0.5;
 
 /// The robot's goal: the last node of its path.
 pub fn goal(signals: &Signals<'_>) -> Option<Point> {

@@ -19,8 +19,9 @@ const BEFORE_SECS: f64 = 2.0;
 const WITHIN_SECS: f64 = 6.0;
 /// Somebody slower than this does not walk, m/s.
 const WALKS_MPS: f64 = 0.15;
-/// Somebody this near to a node is there, m.
+/// Somebody this near to a node is there, m, and goes there from so much farther away.
 const THERE_M: f64 = 1.0;
+const FROM_M: f64 = 1.0;
 /// A pace is the mean over so much time of walking, s, of which at least so much is there, s.
 const PACE_SECS: f64 = 3.0;
 const LEAST_SECS: f64 = 1.5;
@@ -113,6 +114,14 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
     let Some(first) = track.samples.iter().find(there) else {
         return Finding::never(-1.0, vec![], format!("{human} is not there any more at {begun_s:.1} s"));
     };
+    if from(first) <= THERE_M + FROM_M {
+        let text = format!(
+            "{human} goes to the place from {begun_s:.1} s, and is there already: {:.1} m away (more than {:.0} m asked)",
+            from(first),
+            THERE_M + FROM_M
+        );
+        return Finding::fails(from(first) - THERE_M - FROM_M, vec![begun_s], text);
+    }
     let nearest = track.samples.iter().filter(there).min_by(|a, b| from(a).total_cmp(&from(b))).unwrap_or(first);
     let arrived = track.samples.iter().filter(there).find(|sample| from(sample) <= THERE_M);
     let text = format!(

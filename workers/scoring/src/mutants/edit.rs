@@ -124,6 +124,16 @@ pub(super) fn delayed(run: &Recording, agent: AgentId, seconds: f64) -> Recordin
     with_states(run, agent, &new, |t| Some(t + seconds).filter(|t| *t <= end))
 }
 
+/// The agent goes its way at half its pace, and so half of it.
+pub(super) fn slowed(run: &Recording, agent: AgentId) -> Recording {
+    let old = states(run, agent);
+    let half = |(k, now): (usize, &AgentState)| {
+        let state = old.get(k / 2).unwrap_or(now);
+        AgentState { flags: now.flags, vx: 0.5 * state.vx, vy: 0.5 * state.vy, ..*state }
+    };
+    with_states(run, agent, &old.iter().enumerate().map(half).collect::<Vec<_>>(), Some)
+}
+
 /// The agent goes its way up to a sample so many samples sooner, and stands there until it is its time.
 pub(super) fn ahead_of_time(run: &Recording, agent: AgentId, upto: usize, by: usize) -> Recording {
     let old = states(run, agent);

@@ -5,6 +5,7 @@ use socrates_model::{Action, AgentId, AgentState, Clause, Point, Predicate, Rela
 
 use super::Edit;
 use super::edits::{NODE_M, Scene, at_node, leader};
+use super::robot;
 use crate::evidence::Evidence;
 use crate::fidelity::standing_of;
 use crate::mutants::edit::{humans, states, ticks_of, time_of};
@@ -33,6 +34,9 @@ fn stands_beside(scene: &Scene<'_>) -> bool {
 #[expect(clippy::wildcard_enum_match_arm, reason = "few are told apart here; the table has a row for each")]
 pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
     let Some(person) = agents.first().copied() else { return false };
+    if robot::line(scene).is_some_and(|rule| !robot::bites(scene, rule, edit)) {
+        return false;
+    }
     if stands_beside(scene)
         && matches!(edit, Edit::StandsFromStart | Edit::OutOfTime | Edit::Backwards | Edit::LogStands)
     {
@@ -77,7 +81,12 @@ pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
         | Edit::OnRobotsWay
         | Edit::IntoRobot
         | Edit::StandsThere
-        | Edit::SkipsAhead => true,
+        | Edit::SkipsAhead
+        | Edit::HalfPace
+        | Edit::SignSooner
+        | Edit::SignLater
+        | Edit::StandsSooner
+        | Edit::SetsOffSooner => true,
     }
 }
 
@@ -212,6 +221,10 @@ fn already_done(scene: &Scene<'_>, person: AgentId) -> bool {
 fn other_way_round(scene: &Scene<'_>, person: AgentId) -> bool {
     match scene.predicate {
         Predicate::HeadOn { .. } => straight_against(scene, person),
+        // Along the robot's way somebody is on the same side of it whichever way they go.
+        Predicate::OnSide { .. } => {
+            matches!(scene.relation(person), Some(Relation::Crossing | Relation::Leaving))
+        }
         Predicate::StartsAt { within_m, .. } => off_named(scene, person, scene.end_s(), within_m + CLEAR_M),
         Predicate::RobotArrives => way_m(scene, AgentId::Robot) >= 1.0,
         Predicate::WalksTogether { .. } => way_m(scene, person) >= 6.0,
@@ -258,6 +271,7 @@ fn log_walks(scene: &Scene<'_>, person: AgentId) -> bool {
         // Somebody who walks across the robot's line leaves it.
         Some(Action::GiveWay) => scene.act_s.is_some() && walks_on_line(scene, person),
         Some(_) => false,
+        None if robot::line(scene).is_some() => true,
         None => matches!(scene.predicate, Predicate::RobotObeys { gesture, .. } if !gesture_goes(*gesture)),
     }
 }
@@ -404,6 +418,8 @@ fn told_of(predicate: &Predicate, other: AgentId) -> Option<Predicate> {
         | Predicate::StandsStill { human, .. }
         | Predicate::RunsAway { human, .. }
         | Predicate::GivesWay { human }
+        | Predicate::Walks { human, .. }
+        | Predicate::GetsTo { human, .. }
         | Predicate::Reacts { human, .. }
         | Predicate::Leaves { human, .. }
         | Predicate::StaysInside { human, .. }

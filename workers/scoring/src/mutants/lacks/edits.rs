@@ -8,11 +8,12 @@ use socrates_model::{
 
 use super::Edit;
 use super::Whose;
+use super::robot;
 use crate::evidence::Evidence;
 use crate::mutants::early::seen_ahead;
 use crate::mutants::edit::{
-    beside, delayed, dropped, frozen, gone_from, humans, joined, jumped, reversed, shifted, silenced, stands_at,
-    states, stops_at, straight_on, swapped, ticks_of, time_of, walks_off, walks_to, with_states,
+    beside, delayed, dropped, frozen, gone_from, humans, joined, jumped, reversed, shifted, silenced, slowed,
+    stands_at, states, stops_at, straight_on, swapped, ticks_of, time_of, walks_off, walks_to, with_states,
 };
 
 /// Far away is so far, m.
@@ -93,6 +94,7 @@ impl<'a> Scene<'a> {
             | Predicate::Reaches { agent, .. }
             | Predicate::StartsAt { agent, .. } => Some(*agent),
             Predicate::Before { first, .. } => Some(*first),
+            Predicate::RobotStep { .. } => robot::companion(self).or(Some(AgentId::Robot)),
             Predicate::Order { first, .. } => {
                 let first = self.evidence.proposal?.expected_events.iter().find(|clause| clause.id == *first)?;
                 Scene::new(self.evidence, &first.predicate, self.seen).person()
@@ -231,7 +233,9 @@ pub(super) fn edited(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> Optio
             stands_at(run, person, &at, 0.0)
         }
         Edit::IntoRobot => beside(run, person, AgentId::Robot, 0.0, 0.1),
+        Edit::HalfPace => slowed(run, person),
         Edit::SkipsAhead => jumped(run, person, 3.0)?,
+        Edit::SignSooner | Edit::SignLater | Edit::StandsSooner | Edit::SetsOffSooner => robot::edited(scene, edit)?,
     };
     let keeps_log = matches!(edit, Edit::LogStands | Edit::LogWalks);
     let changed = if keeps_log { changed } else { without_arrival(changed, agents) };
@@ -295,7 +299,7 @@ pub(super) fn leader(scene: &Scene<'_>) -> AgentId {
 fn gesture(scene: &Scene<'_>) -> Option<Gesture> {
     match scene.predicate {
         Predicate::Gestures { gesture, .. } | Predicate::RobotObeys { gesture, .. } => Some(*gesture),
-        _ => None,
+        _ => robot::sign(scene),
     }
 }
 

@@ -11,6 +11,7 @@
 
 mod bites;
 mod edits;
+mod robot;
 mod table;
 
 use socrates_model::{Clause, ClauseResult, Predicate, Recording};
@@ -146,6 +147,16 @@ pub(super) enum Edit {
     IntoRobot,
     /// Is 3 s farther on its way from one moment to the next.
     SkipsAhead,
+    /// Goes its way at half the pace.
+    HalfPace,
+    /// Makes the sign long before its reason, or long after it.
+    SignSooner,
+    /// See [`Edit::SignSooner`].
+    SignLater,
+    /// Stands for as long where it starts, and drives on where it stood.
+    StandsSooner,
+    /// Drives on after a quarter of its stand.
+    SetsOffSooner,
 }
 
 /// What a row says of a [`Lack`].

@@ -2,14 +2,16 @@
 
 use socrates_model::Predicate;
 use socrates_model::proposal::WayPart;
+use socrates_model::rule::RobotDo;
 
 use super::{Edit, Entry, Row, Whose};
 
 use Edit::{
     AfterRobot, AheadInstead, AlreadyDone, Aside, AtTheSameTime, Backwards, BesideInstead, DoorAtEnd, DoorAtStart,
-    DoorShut, FarAway, Gone, GoneHalfway, IntoRobot, Later, LogAlone, LogStands, LogWalks, OnRobotsWay, OutOfTime,
-    SeenAhead, SkipsAhead, Sooner, StandsFromEvidence, StandsFromStart, StandsThere, Swapped, SwappedMidway,
-    SwappedPair, TowardsInstead, TurnedAbout, TurnedAway, WalksOff, WalksToRobot,
+    DoorShut, FarAway, Gone, GoneHalfway, HalfPace, IntoRobot, Later, LogAlone, LogStands, LogWalks, OnRobotsWay,
+    OutOfTime, SeenAhead, SetsOffSooner, SignLater, SignSooner, SkipsAhead, Sooner, StandsFromEvidence,
+    StandsFromStart, StandsSooner, StandsThere, Swapped, SwappedMidway, SwappedPair, TowardsInstead, TurnedAbout,
+    TurnedAway, WalksOff, WalksToRobot,
 };
 use Entry::{AsFirst, Exempt, Spoil};
 use Whose::{Everybody, LastMember, Leavers, Members, Person, Robot};
@@ -38,6 +40,10 @@ const ALL_TOO_LATE: Entry = Spoil(&[(Everybody, OutOfTime)]);
 const ALL_LOG_STANDS: Entry = Spoil(&[(Everybody, LogStands)]);
 const MEMBER_ABSENT: Entry = Spoil(&[(LastMember, Gone), (LastMember, FarAway)]);
 const MEMBER_SWAPPED: Entry = Spoil(&[(LastMember, Swapped)]);
+const LEAVERS_STAND: Entry = Spoil(&[(Robot, StandsFromStart), (Leavers, StandsFromStart)]);
+const LEAVERS_ABSENT: Entry = Spoil(&[(Leavers, Gone), (Leavers, FarAway)]);
+const LEAVERS_TOO_LATE: Entry = Spoil(&[(Robot, OutOfTime), (Leavers, OutOfTime)]);
+const ROBOT_ABSENT: Entry = Spoil(&[(Robot, Gone), (Robot, FarAway)]);
 const ROBOT_STANDS: Entry = Spoil(&[(Robot, StandsFromStart)]);
 const ROBOT_TOO_LATE: Entry = Spoil(&[(Robot, OutOfTime)]);
 const ROBOT_LOG_STANDS: Entry = Spoil(&[(Robot, LogStands)]);
@@ -105,11 +111,24 @@ rows! {
         PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     GOES_TO "goes_to" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     CHANGES_PACE "changes_pace" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    WALKS "walks" PERSON_STANDS, PERSON_ABSENT, Exempt("a pace is the same whichever way somebody walks"),
+        Spoil(&[(Person, OutOfTime), (Person, HalfPace)]), PERSON_SWAPPED, PERSON_LOG_STANDS;
+    GETS_TO "gets_to" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     ROBOT_WAY "robot_way" ROBOT_STANDS, Spoil(&[(Robot, FarAway)]), EITHER_WAY, ROBOT_TOO_LATE, ROBOT_ALONE, ROBOT_LOG_STANDS;
     ROBOT_STARTS "robot_starts" Exempt("a robot that stands at its start starts there"), Spoil(&[(Robot, FarAway)]),
         Spoil(&[(Robot, Backwards)]), Exempt("it starts there whenever it sets off"), ROBOT_ALONE, NO_ACT;
     ROBOT_AVOIDS "robot_avoids" Exempt("a robot that stands enters nothing"), Exempt("a robot that is far away enters nothing"), EITHER_WAY,
         Exempt("it tells what the robot does at no time"), ROBOT_ALONE, Exempt("it tells what the robot does not do");
+    ROBOT_SAYS "robot_step_says" ROBOT_STANDS, ROBOT_ABSENT, Exempt("a sign is the same to either side"),
+        Spoil(&[(Robot, OutOfTime), (Robot, SignSooner), (Robot, SignLater)]), ROBOT_ALONE, Spoil(&[(Robot, LogAlone)]);
+    ROBOT_WAITS "robot_step_waits" Spoil(&[(Robot, StandsFromStart), (Robot, StandsFromEvidence)]), ROBOT_ABSENT,
+        Exempt("to stand has no direction"), Spoil(&[(Robot, OutOfTime), (Robot, StandsSooner)]), ROBOT_ALONE,
+        Spoil(&[(Robot, LogWalks), (Robot, SetsOffSooner)]);
+    ROBOT_LETS_OUT "robot_step_lets_out" LEAVERS_STAND, LEAVERS_ABSENT, Spoil(&[(Robot, Backwards)]), LEAVERS_TOO_LATE,
+        NAMES_NOBODY, Spoil(&[(Robot, LogStands), (Leavers, LogStands)]);
+    ROBOT_GOES_WITH "robot_step_goes_with" ROBOT_STANDS, ROBOT_ABSENT,
+        Exempt("somebody is followed, led and passed whichever way the two go"), ROBOT_TOO_LATE, PERSON_SWAPPED,
+        ROBOT_LOG_STANDS;
     GESTURES "gestures" PERSON_STANDS, PERSON_ABSENT, Exempt("a sign is the same to either side"), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogAlone)]);
     LEAVES "leaves" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, Spoil(&[(Person, OutOfTime), (Person, AlreadyDone)]),
@@ -146,10 +165,8 @@ rows! {
     ROBOT_KEEPS "robot_keeps" Spoil(&[(Person, OnRobotsWay)]), Exempt("a distance is kept from those who are far away"),
         Spoil(&[(Person, IntoRobot)]), Exempt("a meeting that is missed keeps its distance"), NAMES_NOBODY,
         Exempt("it tells what the robot does not do");
-    ROBOT_ENTERS_LAST "robot_enters_last" Spoil(&[(Robot, StandsFromStart), (Leavers, StandsFromStart)]),
-        Spoil(&[(Leavers, Gone), (Leavers, FarAway)]), Spoil(&[(Robot, Backwards)]),
-        Spoil(&[(Robot, OutOfTime), (Leavers, OutOfTime)]), NAMES_NOBODY,
-        Spoil(&[(Robot, LogStands), (Leavers, LogStands)]);
+    ROBOT_ENTERS_LAST "robot_enters_last" LEAVERS_STAND, LEAVERS_ABSENT, Spoil(&[(Robot, Backwards)]), LEAVERS_TOO_LATE,
+        NAMES_NOBODY, Spoil(&[(Robot, LogStands), (Leavers, LogStands)]);
     ROBOT_LEAVES_FIRST "robot_leaves_first" ROBOT_STANDS, Spoil(&[(Everybody, Gone), (Everybody, FarAway)]),
         Spoil(&[(Robot, Backwards)]), ROBOT_TOO_LATE, NAMES_NOBODY, ROBOT_LOG_STANDS;
     ROBOT_JOINS "robot_joins" ROBOT_STANDS, Spoil(&[(Members, Gone), (Members, FarAway)]), Spoil(&[(Robot, Backwards)]),
@@ -176,9 +193,12 @@ pub const fn row(predicate: &Predicate) -> &'static Row {
         Predicate::TurnsBack { .. } => &TURNS_BACK,
         Predicate::GoesTo { .. } => &GOES_TO,
         Predicate::ChangesPace { .. } => &CHANGES_PACE,
+        Predicate::Walks { .. } => &WALKS,
+        Predicate::GetsTo { .. } => &GETS_TO,
         Predicate::RobotWay { part: WayPart::Start, .. } => &ROBOT_STARTS,
         Predicate::RobotWay { part: WayPart::Avoid, .. } => &ROBOT_AVOIDS,
         Predicate::RobotWay { .. } => &ROBOT_WAY,
+        Predicate::RobotStep { rule, .. } => of_robot(&rule.act),
         Predicate::Ahead { .. } => &AHEAD,
         Predicate::Overtakes { .. } => &OVERTAKES,
         Predicate::RobotPasses { .. } => &ROBOT_PASSES,
@@ -221,5 +241,15 @@ pub const fn row(predicate: &Predicate) -> &'static Row {
         Predicate::RobotJoins { .. } => &ROBOT_JOINS,
         Predicate::RobotLeavesGroup { .. } => &ROBOT_LEAVES_GROUP,
         Predicate::RobotObeys { .. } => &ROBOT_OBEYS,
+    }
+}
+
+/// The row of a line of the robot's script.
+const fn of_robot(act: &RobotDo) -> &'static Row {
+    match act {
+        RobotDo::Say(_) => &ROBOT_SAYS,
+        RobotDo::Hold(_) | RobotDo::HoldUntil(_) => &ROBOT_WAITS,
+        RobotDo::WaitForLeavers => &ROBOT_LETS_OUT,
+        RobotDo::Follow(_) | RobotDo::Abreast(_) | RobotDo::Overtake(_) | RobotDo::Lead(_) => &ROBOT_GOES_WITH,
     }
 }
