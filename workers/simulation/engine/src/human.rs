@@ -86,6 +86,10 @@ pub(crate) struct Human {
     pub(crate) at: Point,
     pub(crate) velocity: Vector,
     pub(crate) yaw: f64,
+    /// Whether somebody else, or the robot, waits for something that they do.
+    pub(crate) awaited: bool,
+    /// How far beside the door they look at first where they stay behind it, rad.
+    pub(crate) off_rad: f64,
     pub(crate) omega: f64,
     pub(crate) radius_m: f64,
     pub(crate) speed_mps: f64,

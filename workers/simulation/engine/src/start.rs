@@ -25,6 +25,7 @@ use crate::meetings::{self, Marks};
 use crate::models::{TRACK_LEAF, Walks};
 use crate::near::Notice;
 use crate::placing;
+use crate::rendezvous;
 use crate::robot::Robot;
 use crate::setup::{PERSON_RADIUS_M, Setup};
 
@@ -38,6 +39,9 @@ const SWAY_WALKING: f64 = 2.0;
 
 /// So far before a meeting the robot's way tells from where it comes, m.
 const COMES_M: f64 = 0.5;
+
+/// Whoever stays inside and looks at the robot later looks so far beside the door at first, rad.
+const TURNED_RAD: f64 = 0.6;
 
 /// Two who go in to one place stand so far to its sides, m.
 const SHARED_M: f64 = 0.4;
@@ -233,6 +237,9 @@ fn human(
         let looks = if proposal.rules.iter().any(sees) { across - along } else { across };
         facing = libm::atan2(looks.y, looks.x);
     }
+    // Whoever stays inside and is to look at the robot when it comes is not looking at its door all along.
+    let looks = |rule: &socrates_model::Rule| rule.step.is_some() && rule.act == Action::LookAtRobot;
+    let off_rad = if proposal.rules.iter().any(looks) { TURNED_RAD } else { 0.0 };
     let state = tree.start_with(&BTreeMap::from([
         ("id".to_owned(), proposal.id.number().to_string()),
         ("dt".to_owned(), STEP_SECS.to_string()),
@@ -252,6 +259,8 @@ fn human(
         meetings,
         doors,
         yaw: facing,
+        awaited: meetings::is_awaited(setup, proposal),
+        off_rad,
         speed_mps,
         steps: proposal.steps(),
         ..bare(proposal.id, tree, state, at)
@@ -307,6 +316,8 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         doors: Vec::new(),
         velocity: Vector::zeros(),
         yaw: 0.0,
+        awaited: false,
+        off_rad: 0.0,
         omega: 0.0,
         radius_m: PERSON_RADIUS_M,
         speed_mps: SPEED.0,
@@ -342,12 +353,19 @@ fn in_time(
     marks: Vec<(NodeId, f64)>,
     meetings: Vec<Meeting>,
 ) -> Way {
-    let Some(meet) = meetings.first().filter(|_| matches!(relation, Relation::Crossing | Relation::Frontal)) else {
+    // Of those ahead only whoever does something as the robot comes up: the others it may come up with sooner.
+    let timed = |meet: &&Meeting| match relation {
+        Relation::Crossing | Relation::Frontal => true,
+        Relation::Ahead => meet.lead_s > rendezvous::lead_s(Relation::Ahead, false),
+        Relation::Behind | Relation::Abreast | Relation::Static | Relation::Leaving | Relation::Staying => false,
+    };
+    let Some(meet) = meetings.first().filter(timed) else {
         return (route, marks, meetings);
     };
-    let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1);
-    // Who is fast anyway has the longer way.
-    let hurry_mps = HURRY_MPS.max(speed_mps);
+    let ahead = relation == Relation::Ahead;
+    let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1) - if ahead { meet.lead_s } else { 0.0 };
+    // Who is fast anyway has the longer way; nobody ahead of a robot that is to come up with them hurries.
+    let hurry_mps = if ahead { speed_mps } else { HURRY_MPS.max(speed_mps) };
     let late_s = meet.human_s / hurry_mps - robot_s;
     if late_s < LATE_S {
         return (route, marks, meetings);
