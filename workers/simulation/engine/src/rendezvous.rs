@@ -177,7 +177,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
 
 /// A robot that somebody holds up who stands nearer to it than this, m, stands because of them.
 const HOLDS_UP_M: f64 = 5.0;
-/// Who is met at most so much farther along the robot's way is met at the same place, m.
+/// Somebody who is met at most so much farther along the robot's way is met at the same place, m.
 const SAME_PLACE_M: f64 = 0.5;
 
 /// The meetings at which somebody holds the robot up, by where they lie along its way, m, with who does; none while it drives.

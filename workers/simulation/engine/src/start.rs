@@ -364,7 +364,7 @@ fn in_time(
     };
     let ahead = relation == Relation::Ahead;
     let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1) - if ahead { meet.lead_s } else { 0.0 };
-    // Who is fast anyway has the longer way; nobody ahead of a robot that is to come up with them hurries.
+    // Somebody who is fast anyway has the longer way; nobody ahead of a robot that is to come up with them hurries.
     let hurry_mps = if ahead { speed_mps } else { HURRY_MPS.max(speed_mps) };
     let late_s = meet.human_s / hurry_mps - robot_s;
     if late_s < LATE_S {
