@@ -271,12 +271,14 @@ fn out_of(scene: &Scene<'_>, wish: &Wish, start: usize) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
     let tree = net.tree(start, &|_| false);
     let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
+    let named = |goal: usize| net.called(goal, true) > 0.0 && !inside::same_door(net, goal, Some(start));
     let mut routes: Vec<Route> = (0..net.len())
-        .filter(|goal| !net.inside(*goal) && tree.length_m(*goal).is_finite())
+        .filter(|goal| !net.inside(*goal) || named(*goal))
+        .filter(|goal| tree.length_m(*goal).is_finite())
         .filter_map(|goal| {
             let nodes = tree.way(goal);
             let meet = nodes.iter().position(|node| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway)?;
-            let out = nodes.get(meet..)?.iter().all(|node| !net.inside(*node));
+            let out = nodes.get(meet..)?.iter().all(|node| !net.inside(*node) || *node == goal);
             if meet == 0 || !out || meet + 1 >= nodes.len() {
                 return None;
             }

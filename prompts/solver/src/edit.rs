@@ -262,6 +262,7 @@ fn taken<'a>(net: &'a Net<'a>, paths: &Paths, but: HumanId, class: PlaceClass, e
         place: class,
         meant: &[],
         standing: Vec::new(),
+        toward: false,
         boards: 0,
         wide: false,
         entry: None,

@@ -64,6 +64,7 @@ fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Opti
         place: proposal.place,
         meant: &meant,
         standing: Vec::new(),
+        toward: proposal.humans.iter().any(|human| human.relation == Relation::Frontal),
         boards: boarding::count(proposal),
         wide: limits.wide,
         entry: None,

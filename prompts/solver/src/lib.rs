@@ -30,6 +30,7 @@ mod search;
 mod second_meeting;
 mod sides;
 mod spread;
+mod through_door;
 mod told;
 
 #[cfg(test)]
@@ -38,6 +39,8 @@ mod testing;
 mod tests;
 #[cfg(test)]
 mod tests_by_hand;
+#[cfg(test)]
+mod tests_doors;
 
 use std::collections::BTreeMap;
 

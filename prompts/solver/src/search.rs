@@ -11,7 +11,7 @@ use crate::everybody::{Solution, written};
 use crate::graph::Net;
 use crate::people::Way;
 use crate::robot_way::{LEAST_M, Wish, missing_m, times_shortest};
-use crate::{Miss, Problem, Solved, edit, miss, named_way, second_meeting};
+use crate::{Miss, Problem, Solved, edit, miss, named_way, second_meeting, through_door};
 
 /// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
 const ELSEWHERE_M: f64 = 3.0;
@@ -30,6 +30,12 @@ const CHECKED: usize = 24;
 /// # Errors
 /// What does not fit, where on the map and by how much, where the map has no paths for it.
 pub fn solve(problem: &Problem<'_>) -> Result<Solved, Miss> {
+    // Where the map has no ways as the doors ask for them, those without are better than none.
+    let led = through_door::led(problem);
+    led.and_then(|led| solve_as(&led.problem(problem)).ok()).map_or_else(|| solve_as(problem), Ok)
+}
+
+fn solve_as(problem: &Problem<'_>) -> Result<Solved, Miss> {
     let net = Net::of(problem);
     if let Some(miss) = miss::beforehand(problem, &net) {
         return Err(miss);

@@ -76,6 +76,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) meant: &'a [usize],
     /// Where those stand who have been placed there.
     pub(crate) standing: Vec<usize>,
+    /// Whether somebody comes towards the robot.
+    pub(crate) toward: bool,
     /// How many stand before a door at first and go in.
     pub(crate) boards: usize,
     /// Whether many different scenarios are wanted.

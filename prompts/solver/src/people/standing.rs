@@ -10,6 +10,9 @@ use crate::sides;
 /// The robot starts at least so far from those who stand at a place by name, so that it comes to them, m.
 const SEEN_M: f64 = 6.0;
 
+/// Whoever stands on a side of the robot's way stands so far from where somebody comes towards it, along the way, m.
+const CLEAR_M: f64 = 5.0;
+
 /// No node: somebody with whom the robot starts is met nowhere.
 const NOWHERE: usize = usize::MAX;
 
@@ -30,7 +33,15 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     }
     let last = route.nodes.len().checked_sub(1)?;
     let mut places: Vec<usize> = (1..last).collect();
-    places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
+    // Round somebody who comes towards it a robot would pass whoever stands right there on the side where there is room.
+    let apart_m = |i: usize| {
+        let between = route.nodes.get(i.min(route.meet)..=i.max(route.meet));
+        taken.net.length_m(between.unwrap_or_default())
+    };
+    let is_place = |i: usize| route.nodes.get(i).is_some_and(|node| taken.net.is(*node, taken.place));
+    let clear = |i: usize| apart_m(i) >= CLEAR_M && is_place(i);
+    let sided = human.side.is_some() && taken.toward;
+    places.sort_by_key(|i| (sided && !clear(*i), i.abs_diff(route.meet), *i));
     let floor = |i: &usize| sides::has_floor(taken.net, route, human, *i);
     let at =
         places.into_iter().filter(floor).filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;

@@ -173,6 +173,7 @@ impl Engine {
             .filter(|human| human.inside_still())
             .filter_map(|human| human.doors.first().map(|on_way| on_way.door))
             .collect();
+        let holders = rendezvous::holders(&self.humans, self.robot.as_ref());
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let let_out = door.is_none_or(|on_way| !coming_out.contains(&on_way.door));
@@ -187,10 +188,11 @@ impl Engine {
                 });
             let first =
                 asked && nearest.is_some_and(|(id, group)| id == human.id || group.is_some() && group == human.group);
-            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door, stands_open, let_out };
+            let held_up = rendezvous::is_held_up(&holders, human, timing);
+            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door, stands_open, let_out, held_up };
             // Other actions have their own speed; the rendezvous waits meanwhile.
             let mut pace = if human.gets_on() && !human.diverted {
-                rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps
+                rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps.min(human.fastest_mps)
             } else {
                 human.speed_mps
             };

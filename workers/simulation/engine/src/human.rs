@@ -86,6 +86,10 @@ pub(crate) struct Human {
     pub(crate) at: Point,
     pub(crate) velocity: Vector,
     pub(crate) yaw: f64,
+    /// Whether somebody else, or the robot, waits for something that they do.
+    pub(crate) awaited: bool,
+    /// How far beside the door they look at first where they stay behind it, rad.
+    pub(crate) off_rad: f64,
     pub(crate) omega: f64,
     pub(crate) radius_m: f64,
     pub(crate) speed_mps: f64,
@@ -100,6 +104,8 @@ pub(crate) struct Human {
     pub(crate) errand: Errand,
     /// Where it was at tick 0.
     pub(crate) home: Point,
+    /// How fast it walks at most to be in time, m/s.
+    pub(crate) fastest_mps: f64,
     /// Whether it makes room for the robot: then it stands in its way until then.
     pub(crate) opens: bool,
     /// Where it stands while it stands.

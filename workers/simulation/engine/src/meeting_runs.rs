@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::{EventKind, Recording, Relation};
+use socrates_model::{Action, EventKind, Recording, Relation, Rule, Trigger};
 
 use crate::fixture::{Cast, carve, grouped, location, run, setup};
 use crate::setup::Setup;
+use crate::tests::corridor;
 
 /// Two halls' worth of corridors: a ring around a block, with a tail at each side.
 fn ring() -> socrates_model::Location {
@@ -189,5 +190,29 @@ fn a_look_at_the_first_meeting_does_not_spoil_the_second() {
         let met = numbered(&run(Setup { seed, ..made }));
         assert_eq!(met.len(), 2, "seed {seed}: {met:?}");
         assert!(met[1].3.abs() <= 4.0, "seed {seed}: {met:?}");
+    }
+}
+
+#[test]
+fn whoever_is_met_next_waits_while_somebody_else_holds_the_robot_up() {
+    let me = socrates_model::HumanId::new(1);
+    let step = |number, when: Trigger, act| Rule {
+        when: vec![when],
+        act,
+        latched: true,
+        step: Some(number),
+        ..Rule::default()
+    };
+    for seed in 1..=4 {
+        let rules = vec![
+            Rule { for_s: Some(25.0), ..step(1, Trigger::RobotNear(2.0), Action::Block) },
+            Rule { until: vec![Trigger::RobotPassed], ..step(2, Trigger::Did(me, 1), Action::GiveWay) },
+        ];
+        let cast =
+            [Cast(Relation::Static, &["b"], rules), Cast(Relation::Frontal, &["e", "d", "c", "b", "a"], Vec::new())];
+        let made = setup(corridor(), &["a", "b", "c", "d", "e"], &cast, &[(1, "b"), (2, "d")]);
+        let met = met(&run(Setup { seed, ..made }));
+        let next = met.iter().find(|(human, ..)| *human == 2).unwrap_or_else(|| panic!("seed {seed}: {met:?}"));
+        assert!(next.2.abs() <= 2.5, "seed {seed}: {met:?}");
     }
 }

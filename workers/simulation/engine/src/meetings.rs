@@ -1,5 +1,6 @@
 //! Where and in which order a human meets the robot: from the paths to lengths along the ways, and which meeting is on.
 
+use socrates_model::rule::{RobotDo, RobotWhen};
 use socrates_model::{
     Action, AgentId, Clause, HumanId, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Rule, Trigger, Visit,
 };
@@ -60,6 +61,10 @@ pub(crate) fn of(
 
 /// Pace of somebody of whom none is stated, m/s.
 const PACE_MPS: f64 = 1.2;
+/// Somebody from behind who stops at the place has the robot so far behind them there, m.
+const PASSES_M: f64 = 3.0;
+/// The robot that comes up to somebody ahead is there with them from so much nearer than what they wait for, m: the usual lead.
+const NEARS_M: f64 = 0.75;
 /// Somebody who lets the robot go first stands so far before the place, m.
 const SHORT_M: f64 = 1.8;
 
@@ -73,6 +78,21 @@ fn stops_s(proposal: &HumanProposal, robot_mps: f64) -> f64 {
     let mut steps: Vec<_> = proposal.rules.iter().filter(|rule| rule.step.is_some()).collect();
     steps.sort_by_key(|rule| rule.step);
     let stands = |rule: &&&Rule| matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::LookAt(_));
+    match proposal.relation {
+        Relation::Ahead => return nears_s(steps.first().copied(), robot_mps),
+        // To get past the robot they have to be there well before it, where they stop.
+        Relation::Behind if steps.first().filter(stands).is_some_and(|first| first.when == [Trigger::AtEncounter]) => {
+            return PASSES_M / robot_mps;
+        }
+        Relation::Frontal
+        | Relation::Behind
+        | Relation::Abreast
+        | Relation::Crossing
+        | Relation::Static
+        | Relation::Leaving
+        | Relation::Staying
+        | Relation::Aside => {}
+    }
     let at_m = steps.first().filter(stands).and_then(|first| {
         let [Trigger::RobotVisible(m) | Trigger::RobotNear(m)] = first.when.as_slice() else { return None };
         Some(*m)
@@ -87,6 +107,47 @@ fn stops_s(proposal: &HumanProposal, robot_mps: f64) -> f64 {
     let walks_s = left_m / (robot_mps + pace(proposal));
     let own_m = walks_s * pace(proposal);
     (apart_m - own_m) / robot_mps - walks_s
+}
+
+/// The same of somebody ahead who begins something when the robot has come up to them: that is to be where they meet.
+fn nears_s(first: Option<&Rule>, robot_mps: f64) -> f64 {
+    let begins = first.filter(|rule| rule.act != Action::Navigate).map(|rule| rule.when.as_slice());
+    let Some([Trigger::RobotNear(m)]) = begins else { return 0.0 };
+    (m - NEARS_M).max(0.0) / robot_mps
+}
+
+/// Whether somebody else, or the robot, waits for something that this one does.
+pub(crate) fn is_awaited(setup: &Setup, proposal: &HumanProposal) -> bool {
+    let waits = |when: &Trigger| match when {
+        Trigger::Done(id) | Trigger::Did(id, _) | Trigger::HumanSays(id, _) => *id == proposal.id,
+        Trigger::Always
+        | Trigger::RobotVisible(_)
+        | Trigger::RobotNear(_)
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::RobotPassed
+        | Trigger::RobotSays(_)
+        | Trigger::AtEncounter
+        | Trigger::GoalReached
+        | Trigger::AfterSecs(_)
+        | Trigger::StoppedFor(_) => false,
+    };
+    let others = setup.proposal.humans.iter().filter(|other| other.id != proposal.id);
+    let by_people = others.flat_map(|other| &other.rules).any(|rule| rule.when.iter().chain(&rule.until).any(waits));
+    let says = |when: &RobotWhen| match when {
+        RobotWhen::HumanSays(sign) => proposal.rules.iter().any(|rule| rule.gesture == Some(*sign)),
+        RobotWhen::Start
+        | RobotWhen::Blocked(_)
+        | RobotWhen::HumanNear(_)
+        | RobotWhen::AtEncounter(_)
+        | RobotWhen::AfterSecs(_) => false,
+    };
+    let by_robot =
+        setup.proposal.robot.script.iter().any(|line| {
+            says(&line.when) || if let RobotDo::HoldUntil(until) = &line.act { says(until) } else { false }
+        });
+    by_people || by_robot
 }
 
 /// Every two of whom the one is to be first, there or through a door.

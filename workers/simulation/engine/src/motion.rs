@@ -49,7 +49,9 @@ const ASIDE_TAKEN_M: f64 = 0.2;
 /// Distance behind at which somebody is passed, m.
 const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
-const ASIDE_M: f64 = 1.0;
+pub(crate) const ASIDE_M: f64 = 1.0;
+/// So much farther from it goes who is aside already, m.
+const GOES_M: f64 = 0.45;
 /// Gap, surface to surface, at which somebody who makes room goes by a robot that stands, m: in a doorway less is no way
 /// out.
 const BY_ROBOT_M: f64 = 0.25;
@@ -434,7 +436,9 @@ fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
         || human.errand.spot.is_some_and(|spot| off(&spot) < 0.85) && scene.now_s - human.errand.since_s > 1.0
     {
         human.errand.since_s = scene.now_s;
-        let mut found = if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) };
+        // Whoever does so of their own is seen to go, also from where they are aside already.
+        let wanted_m = if human.action == Action::GiveWay { ASIDE_M.max(here + GOES_M) } else { ASIDE_M };
+        let mut found = if here >= wanted_m { human.at } else { aside_spot(human, scene, wanted_m, &off) };
         if off(&found) < human.radius_m + robot.model.radius_m + 0.1 {
             // In a narrow aisle there is no aside: it walks ahead of the robot to where there is one.
             found = bay(human, scene, &line).or_else(|| refuge(human, scene, robot)).unwrap_or(found);
@@ -469,8 +473,8 @@ fn bay(human: &Human, scene: &Scene<'_>, line: &Polyline) -> Option<Point> {
     })
 }
 
-/// The nearest free spot off the robot's line that can be reached straight; the farthest off where none is far enough.
-pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> Point {
+/// The nearest free spot so far off the robot's line that can be reached straight; the farthest off where none is far enough.
+pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, wanted_m: f64, off: &dyn Fn(&Point) -> f64) -> Point {
     let mut best = (off(&human.at), human.at);
     let toward = scene.robot.map_or_else(Vector::zeros, |robot| {
         let way = robot.at() - human.at;
@@ -504,7 +508,7 @@ pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) 
             }
             // Back or aside rather than towards the robot, and no farther than it takes.
             let nearer = (spot - human.at).dot(&toward).max(0.0);
-            let distance = off(&spot).min(ASIDE_M + 0.05) - 0.15 * (nearer + (spot - human.at).norm());
+            let distance = off(&spot).min(wanted_m + 0.05) - 0.15 * (nearer + (spot - human.at).norm());
             if distance > best.0 + 0.02 {
                 best = (distance, spot);
             }

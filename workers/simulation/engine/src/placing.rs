@@ -127,6 +127,7 @@ fn spot(
                 let depth = (at - door).norm();
                 // Whoever leaves stands before whoever stays.
                 cost = if human.relation == Relation::Staying { cost - 1.5 * depth } else { cost + 0.6 * depth };
+                cost += unmet(human, &at);
                 if depth < 0.7 || cost.is_nan() {
                     cost += 5.0;
                 }
@@ -156,6 +157,16 @@ fn spot(
     }
     let at = best.map(|(_, at)| at).or_else(|| farther(floor, &home, human.radius_m, &free))?;
     Some((at, facing(human, &at, door)))
+}
+
+/// Whoever stays inside stands at most so far from where the robot comes to them, m, and what each meter more costs, m.
+const MET_M: f64 = 2.6;
+const UNMET_PER_M: f64 = 6.0;
+
+/// What it costs somebody who stays to stand where the robot does not come near them, m.
+fn unmet(human: &Human, at: &Point) -> f64 {
+    let met = human.meeting().filter(|_| human.relation == Relation::Staying);
+    met.map_or(0.0, |meeting| UNMET_PER_M * ((at - meeting.at).norm() - MET_M).max(0.0))
 }
 
 /// Least distance beside the robot's way as planned of somebody who stands on a side of it, m.
@@ -230,7 +241,8 @@ fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
         None if ahead.norm() > 0.5 && (human.relation != Relation::Static || !human.doors.is_empty()) => ahead,
         None => human.meeting().map_or_else(|| Vector::new(1.0, 0.0), |_| human.heading()),
     };
-    libm::atan2(toward.y, toward.x)
+    let off_rad = if human.relation == Relation::Staying && door.is_some() { human.off_rad } else { 0.0 };
+    socrates_model::geometry::wrap_angle(libm::atan2(toward.y, toward.x) + off_rad)
 }
 
 fn reachable(floor: &Floor, from: &Point, to: &Point, radius_m: f64) -> bool {

@@ -6,7 +6,7 @@
 //! where the robot comes up from behind), and is held (at most 10 s in all) only where the robot cannot see it: nobody freezes in
 //! the robot's view.
 
-use socrates_model::{HumanId, Point, Relation, Vector};
+use socrates_model::{Action, HumanId, Point, Relation, Vector};
 
 use crate::human::{DoorOnWay, Human};
 use crate::robot::Robot;
@@ -24,6 +24,10 @@ const HOLD_MAX_S: f64 = 10.0;
 const VIEW_M: f64 = 9.0;
 /// Somebody who has not started sets off when the robot sees it from nearer than this, m: it would stand in its way.
 const SET_OFF_M: f64 = 2.5;
+/// Somebody who needs less than this share of their pace to be there in time is early.
+const EARLY: f64 = 0.97;
+/// Of a robot that another holds up people keep so far away while they wait for it, m.
+const KEEPS_OFF_M: f64 = 3.0;
 /// Nobody waits longer for a robot that stands, s: it may have been told to wait for them.
 const SET_OFF_S: f64 = 8.0;
 /// Nobody starts before this, s: the first moments show where everybody is.
@@ -107,6 +111,8 @@ pub(crate) struct Moment {
     pub(crate) stands_open: bool,
     /// Whether nobody is to come out through that door any more.
     pub(crate) let_out: bool,
+    /// Whether the robot stands because of somebody else whom it meets no later: nobody knows for how long.
+    pub(crate) held_up: bool,
 }
 
 /// Speed for one human at one tick.
@@ -142,12 +148,16 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
+    // Whoever would be there long before a robot that somebody else holds up waits until it drives again.
+    if moment.held_up && apart > KEEPS_OFF_M && needed < EARLY * human.speed_mps {
+        return hold;
+    }
     if human.started && in_view && moment.first && apart < FACES_M && faces(human, robot) {
         return Pace { speed_mps: needed.clamp(human.speed_mps, HURRY_MPS.max(human.speed_mps)) };
     }
     if !human.started {
         // Early: somebody who stands there, and sets off in time. Late or just right: go.
-        let early = needed < 0.97 * human.speed_mps;
+        let early = needed < EARLY * human.speed_mps;
         if early && robot.stood_s < SET_OFF_S && !(moment.sight && apart < SET_OFF_M) {
             return hold;
         }
@@ -156,12 +166,52 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         return hold;
     }
     let mut speed = needed.clamp(slowest, fastest);
-    if human.relation == Relation::Behind && is_first {
+    // Whoever is to be there well before it gets past it on the way.
+    if human.relation == Relation::Behind && is_first && meeting.lead_s <= 0.0 {
         // Catches up without treading on its heels.
         let behind = robot.s - (human.s + meeting.robot_s - meeting.human_s);
         speed = speed.min((robot.v.max(0.0) + 0.6 * (behind - 1.2)).max(0.0));
     }
     Pace { speed_mps: speed }
+}
+
+/// A robot that somebody holds up who stands nearer to it than this, m, stands because of them.
+const HOLDS_UP_M: f64 = 5.0;
+/// Somebody who is met at most so much farther along the robot's way is met at the same place, m.
+const SAME_PLACE_M: f64 = 0.5;
+
+/// The meetings at which somebody holds the robot up, by where they lie along its way, m, with who does; none while it drives.
+pub(crate) fn holders(humans: &[Human], robot: Option<&Robot>) -> Vec<(HumanId, f64)> {
+    let Some(robot) = robot.filter(|robot| robot.has_moved && robot.v < STANDS_MPS && robot.arrived_s.is_none()) else {
+        return Vec::new();
+    };
+    // Standing by a rule of theirs: whoever comes up to it, walks on, or stands where they always do keeps nobody away.
+    let stands = |human: &Human| match human.action {
+        Action::StandStill | Action::LookAtRobot | Action::LookAt(_) | Action::Block => true,
+        Action::Navigate
+        | Action::FollowRobot
+        | Action::FollowHuman(_)
+        | Action::RunAway
+        | Action::GiveWay
+        | Action::MakeRoom
+        | Action::Approach
+        | Action::ApproachTo(_)
+        | Action::TurnBack
+        | Action::GoTo { .. }
+        | Action::ChangePace(_) => false,
+    };
+    let holds = |human: &&Human| human.present() && stands(human) && (human.at - robot.at()).norm() < HOLDS_UP_M;
+    let at = |human: &Human| human.meetings.first().map(|meeting| (human.id, meeting.robot_s));
+    humans.iter().filter(holds).filter_map(at).collect()
+}
+
+/// Whether one of them does so to somebody else who is met no earlier.
+pub(crate) fn is_held_up(holders: &[(HumanId, f64)], human: &Human, timing: &Timing) -> bool {
+    // For whom the others wait they do not wait in turn.
+    let next = human.meetings.get(timing.meeting + usize::from(timing.over)).filter(|_| !human.awaited);
+    next.is_some_and(|meeting| {
+        holders.iter().any(|(holder, robot_s)| *holder != human.id && *robot_s < meeting.robot_s + SAME_PLACE_M)
+    })
 }
 
 /// How long before the robot somebody aims at being at its first meeting, s; `several` come towards the robot there.

@@ -25,6 +25,7 @@ use crate::meetings::{self, Marks};
 use crate::models::{TRACK_LEAF, Walks};
 use crate::near::Notice;
 use crate::placing;
+use crate::rendezvous;
 use crate::robot::Robot;
 use crate::setup::{PERSON_RADIUS_M, Setup};
 
@@ -38,6 +39,9 @@ const SWAY_WALKING: f64 = 2.0;
 
 /// So far before a meeting the robot's way tells from where it comes, m.
 const COMES_M: f64 = 0.5;
+
+/// Whoever stays inside and looks at the robot later looks so far beside the door at first, rad.
+const TURNED_RAD: f64 = 0.6;
 
 /// Two who go in to one place stand so far to its sides, m.
 const SHARED_M: f64 = 0.4;
@@ -218,7 +222,8 @@ fn human(
     }
     let meetings = meetings::of(setup, proposal, (&route, &marks), (robot_way, robot_marks));
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
-    let (route, marks, meetings) = in_time(setup, (proposal.relation, speed_mps), route, marks, meetings);
+    let fastest_mps = fastest(setup, proposal);
+    let (route, marks, meetings) = in_time(setup, (proposal.relation, speed_mps, fastest_mps), route, marks, meetings);
     let doors = doors_on(setup, &route);
     let sway = drawn_sway(setup.seed, proposal.id);
     let mut facing = 0.0;
@@ -233,6 +238,9 @@ fn human(
         let looks = if proposal.rules.iter().any(sees) { across - along } else { across };
         facing = libm::atan2(looks.y, looks.x);
     }
+    // Whoever stays inside and is to look at the robot when it comes is not looking at its door all along.
+    let looks = |rule: &socrates_model::Rule| rule.step.is_some() && rule.act == Action::LookAtRobot;
+    let off_rad = if proposal.rules.iter().any(looks) { TURNED_RAD } else { 0.0 };
     let state = tree.start_with(&BTreeMap::from([
         ("id".to_owned(), proposal.id.number().to_string()),
         ("dt".to_owned(), STEP_SECS.to_string()),
@@ -252,11 +260,29 @@ fn human(
         meetings,
         doors,
         yaw: facing,
+        awaited: meetings::is_awaited(setup, proposal),
+        off_rad,
         speed_mps,
         steps: proposal.steps(),
+        fastest_mps,
         opens: proposal.rules.iter().any(|rule| rule.act == socrates_model::Action::MakeRoom),
         ..bare(proposal.id, tree, state, at)
     }
+}
+
+/// Somebody whose pace is stated hurries by this factor of it at most.
+const STATED: f64 = 1.1;
+
+/// How fast somebody hurries at most to be in time, m/s: at about their pace where a clause tells of it.
+fn fastest(setup: &Setup, proposal: &HumanProposal) -> f64 {
+    let stated = setup.proposal.expected_events.iter().find_map(|clause| {
+        if let Predicate::Walks { human, mps } = clause.predicate {
+            (human == proposal.id).then_some(mps)
+        } else {
+            None
+        }
+    });
+    stated.map_or(f64::INFINITY, |mps| STATED * mps)
 }
 
 /// Companions walk so far beside the robot, m.
@@ -308,6 +334,8 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         doors: Vec::new(),
         velocity: Vector::zeros(),
         yaw: 0.0,
+        awaited: false,
+        off_rad: 0.0,
         omega: 0.0,
         radius_m: PERSON_RADIUS_M,
         speed_mps: SPEED.0,
@@ -317,6 +345,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         pace_mps: None,
         diverted: false,
         errand: Errand::default(),
+        fastest_mps: f64::INFINITY,
         opens: false,
         anchor: None,
         aside_m: 0.0,
@@ -339,17 +368,29 @@ type Way = (Polyline, Vec<(NodeId, f64)>, Vec<Meeting>);
 /// later on its path, but never nearer than [`STILL_LEFT_M`] to the (first) encounter.
 fn in_time(
     setup: &Setup,
-    (relation, speed_mps): (Relation, f64),
+    (relation, speed_mps, fastest_mps): (Relation, f64, f64),
     route: Polyline,
     marks: Vec<(NodeId, f64)>,
     meetings: Vec<Meeting>,
 ) -> Way {
-    let Some(meet) = meetings.first().filter(|_| matches!(relation, Relation::Crossing | Relation::Frontal)) else {
+    // Of those ahead only whoever does something as the robot comes up: the others it may come up with sooner.
+    let timed = |meet: &&Meeting| match relation {
+        Relation::Crossing | Relation::Frontal => true,
+        Relation::Ahead => meet.lead_s > rendezvous::lead_s(Relation::Ahead, false),
+        Relation::Behind
+        | Relation::Abreast
+        | Relation::Static
+        | Relation::Leaving
+        | Relation::Staying
+        | Relation::Aside => false,
+    };
+    let Some(meet) = meetings.first().filter(timed) else {
         return (route, marks, meetings);
     };
-    let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1);
-    // Who is fast anyway has the longer way.
-    let hurry_mps = HURRY_MPS.max(speed_mps);
+    let ahead = relation == Relation::Ahead;
+    let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1) - if ahead { meet.lead_s } else { 0.0 };
+    // Somebody who is fast anyway has the longer way; nobody ahead of a robot that is to come up with them hurries.
+    let hurry_mps = if ahead { speed_mps } else { HURRY_MPS.max(speed_mps).min(fastest_mps) };
     let late_s = meet.human_s / hurry_mps - robot_s;
     if late_s < LATE_S {
         return (route, marks, meetings);

@@ -165,3 +165,52 @@ fn a_sign_to_one_is_noticed_by_nobody_else() {
     let off = socrates_model::geometry::wrap_angle(libm::atan2(you.y - me.y, you.x - me.x) - me.yaw);
     assert!(off.abs() < 0.35, "{off}");
 }
+
+#[test]
+fn somebody_who_has_come_no_way_yet_turns_back_to_where_they_came_from_before() {
+    let me = HumanId::new(1);
+    let turns =
+        Rule { until: vec![Trigger::GoalReached], ..step(1, 1, &[Trigger::RobotVisible(12.0)], Action::TurnBack) };
+    let recording = run(setup(
+        corridor(),
+        &["a", "b", "c", "d"],
+        &[Cast(Relation::Frontal, &["c", "b", "a"], vec![turns])],
+        &[(1, "b")],
+    ));
+    let from = leaf_s(&recording, "TurnBack");
+    let x = |t: f64| recording.tick((t * 100.0) as usize)[1].x;
+    let ended = time(&recording, &EventKind::StepEnded { human: me, step: 1 }).expect("they get there");
+    assert!(x(ended) - x(from) > 2.0, "{} to {}", x(from), x(ended));
+}
+
+#[test]
+fn somebody_whom_something_led_off_their_way_turns_back_as_they_walked() {
+    let me = HumanId::new(1);
+    let rules = vec![
+        Rule { for_s: Some(6.0), ..step(1, 1, &[Trigger::RobotNear(3.0)], Action::FollowRobot) },
+        Rule { until: vec![Trigger::GoalReached], ..step(1, 2, &[], Action::TurnBack) },
+    ];
+    let recording = run(setup(
+        corridor(),
+        &["a", "b", "c", "d", "e"],
+        &[Cast(Relation::Frontal, &["d", "c", "b"], rules)],
+        &[(1, "c")],
+    ));
+    let turned = time(&recording, &EventKind::StepEnded { human: me, step: 1 }).expect("they follow");
+    let x = |t: f64| recording.tick((t * 100.0) as usize)[1].x;
+    assert!(x(turned) - x(turned + 4.0) > 2.0, "{} to {}", x(turned), x(turned + 4.0));
+}
+
+#[test]
+fn somebody_who_stands_aside_already_gives_way_all_the_same() {
+    let away = Rule { until: vec![Trigger::RobotPassed], ..step(1, 1, &[Trigger::RobotNear(3.0)], Action::GiveWay) };
+    let hall = crate::fixture::location(
+        crate::fixture::carve(30.0, 8.0, &[(0.2, 0.2, 29.8, 7.8)]),
+        &[("a", 2.0, 4.0), ("b", 15.0, 4.0), ("s", 15.0, 4.9), ("e", 28.0, 4.0)],
+        &[("a", "b"), ("b", "e"), ("b", "s")],
+    );
+    let recording = run(setup(hall, &["a", "b", "e"], &[Cast(Relation::Static, &["s"], vec![away])], &[(1, "b")]));
+    let y = |t: f64| recording.tick((t * 100.0) as usize)[1].y;
+    let passed = time(&recording, &EventKind::StepEnded { human: HumanId::new(1), step: 1 }).expect("it passes");
+    assert!(y(passed) - y(0.0) > 0.3, "{} to {}", y(0.0), y(passed));
+}

@@ -3,7 +3,7 @@
 use socrates_model::{Action, NodeId, Point, Polyline};
 
 use crate::floor::Floor;
-use crate::human::{DoorOnWay, Human, Meeting};
+use crate::human::{Human, Meeting};
 use crate::setup::Setup;
 use crate::start;
 
@@ -12,6 +12,17 @@ const NEAR_M: f64 = 0.3;
 /// Room that a way has beside somebody's body, m; in an aisle as narrow as the body the way is still a way.
 const WIDE_M: f64 = 0.04;
 const NARROW_M: f64 = 0.06;
+/// Farther from their way than this something has led them off it, m; where they walked then is gone back in steps of this length,
+/// m, at most so many.
+const OFF_WAY_M: f64 = 0.8;
+const STEP_M: f64 = 0.4;
+const MOST_STEPS: u32 = 500;
+/// A way back that is shorter than this, m, leads on past where they began: to a node that lies behind it (cosine), on a way at most
+/// so many times as long as the straight line. Slower than this, m/s, they tell by their way from where they came.
+const BACK_M: f64 = 3.5;
+const BEHIND_COS: f64 = 0.8;
+const STRAIGHT: f64 = 1.1;
+const SLOW_MPS: f64 = 0.2;
 /// Most nodes of a place that are tried, the nearest first.
 const MOST_TRIED: usize = 6;
 /// What lies behind somebody is so far along their way, m: before its beginning.
@@ -20,7 +31,7 @@ const BEHIND_M: f64 = -1.0;
 /// Begins the present act, where it changes the way or the pace.
 pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor) {
     match &human.action {
-        Action::TurnBack if !human.diverted => turn(human),
+        Action::TurnBack if !human.diverted => turn(human, setup, floor),
         Action::GoTo { nodes, .. } => {
             if let Some((node, way)) = nearest(human, nodes, setup, floor) {
                 go(human, node, way, setup);
@@ -46,22 +57,56 @@ pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor) {
 }
 
 /// From here on the way leads back along where it came from.
-fn turn(human: &mut Human) {
-    let gone = human.s;
-    let marks = human.route.points().iter().zip(human.route.marks_m());
-    let behind: Vec<Point> = marks.filter(|(_, mark)| **mark < gone - NEAR_M).map(|(at, _)| *at).collect();
-    let points: Vec<Point> = std::iter::once(human.at).chain(behind.into_iter().rev()).collect();
-    let nodes = std::mem::take(&mut human.nodes);
-    human.nodes =
-        nodes.into_iter().rev().filter(|(_, mark)| *mark < gone).map(|(node, mark)| (node, gone - mark)).collect();
-    let doors = std::mem::take(&mut human.doors);
-    let doors = doors.into_iter().rev().filter(|on_way| on_way.s < gone);
-    human.doors = doors.map(|on_way| DoorOnWay { door: on_way.door, s: gone - on_way.s }).collect();
+fn turn(human: &mut Human, setup: &Setup, floor: &Floor) {
+    let off_m = (human.route.point(human.s) - human.at).norm();
+    let mut points = if off_m > OFF_WAY_M { walked(human) } else { gone(human) };
+    onward(&mut points, human, setup, floor);
+    let way = Polyline::new(&points);
+    let passed = std::mem::take(&mut human.nodes).into_iter().rev().filter(|(_, mark)| *mark < human.s);
+    let at = |mark: f64| way.project(&human.route.point(mark)).0;
+    human.nodes = passed.map(|(node, mark)| (node, at(mark))).collect();
+    human.doors = start::doors_on(setup, &way);
     // A robot that they have not met by now they meet nowhere else.
     let meetings = std::mem::take(&mut human.meetings);
     human.meetings = meetings.into_iter().map(|meeting| Meeting { human_s: BEHIND_M, ..meeting }).collect();
     human.lane_m = -human.lane_m;
-    take(human, Polyline::new(&points));
+    take(human, way);
+}
+
+/// Back along their way from where they are.
+fn gone(human: &Human) -> Vec<Point> {
+    let marks = human.route.points().iter().zip(human.route.marks_m());
+    let behind: Vec<Point> = marks.filter(|(_, mark)| **mark < human.s - NEAR_M).map(|(at, _)| *at).collect();
+    std::iter::once(human.at).chain(behind.into_iter().rev()).collect()
+}
+
+/// Back as they walked, where something led them off their way.
+fn walked(human: &Human) -> Vec<Point> {
+    let trail = &human.trail;
+    let steps = (0..MOST_STEPS).map(|step| trail.length_m() - STEP_M * f64::from(step)).take_while(|s| *s > 0.0);
+    let back = steps.map(|s| trail.point(s)).filter(|at| (at - human.at).norm() > NEAR_M);
+    std::iter::once(human.at).chain(back).chain([trail.point(0.0)]).collect()
+}
+
+/// Lengthens a way back that is short: behind where they began they came from the nearest node that lies there.
+fn onward(points: &mut Vec<Point>, human: &Human, setup: &Setup, floor: &Floor) {
+    let length_m = Polyline::new(points).length_m();
+    let Some(home) = points.last().copied().filter(|_| length_m < BACK_M) else { return };
+    let came = if human.velocity.norm() > SLOW_MPS { human.velocity } else { human.route.direction(human.s) };
+    let nodes = setup.location.graph.nodes().iter().map(|node| node.at);
+    let behind = nodes.filter(|at| {
+        let way = at - home;
+        way.norm() + length_m >= BACK_M && -way.dot(&came) > BEHIND_COS * way.norm() * came.norm()
+    });
+    let mut all: Vec<Point> = behind.collect();
+    all.sort_by(|a, b| (a - home).norm().total_cmp(&(b - home).norm()));
+    let way = |goal: &Point| {
+        let way = floor.way(&home, goal, human.radius_m + WIDE_M)?;
+        (way.length_m() < STRAIGHT * (goal - home).norm()).then_some(way)
+    };
+    if let Some(way) = all.iter().take(MOST_TRIED).find_map(way) {
+        points.extend(way.points().iter().skip(1));
+    }
 }
 
 /// The way to the nearest of some nodes; of two as near, the first.

@@ -5,7 +5,7 @@
 use socrates_model::{Command, Door, Gesture, HumanId, Observation, Point, Polyline, RobotDriver, RobotModel};
 
 use crate::detour;
-use crate::ground::{Ground, closed_door_ahead, obstacles};
+use crate::ground::{Ground, STANDING_MPS, closed_door_ahead, obstacles};
 use crate::mission::Mission;
 use crate::overtaking::{self, Overtaking};
 use crate::patience::Patience;
@@ -30,6 +30,8 @@ const KEPT_M: f64 = 1.5;
 const KEPT_GAP_M: f64 = 0.05;
 const KEPT_MORE_M: f64 = 0.3;
 const GAP_STEP_M: f64 = 0.2;
+/// Whoever blocks the way stands in it by so much, m.
+const BLOCKS_M: f64 = 0.1;
 /// Length of the way that is looked at for people, m.
 const LOOK_M: f64 = 4.0;
 /// A plan leads back to the way at most so far on, m, and so far before a door that is shut, m.
@@ -93,8 +95,9 @@ impl Reference {
         let now = seen.time.secs();
         if now - self.planned_s >= REPLAN_S {
             self.planned_s = now;
-            let new = self.detour(seen);
-            self.plan = match (self.plan.take(), new) {
+            let comes_up = self.comes_up(seen);
+            let new = if comes_up { None } else { self.detour(seen) };
+            self.plan = match (self.plan.take().filter(|_| !comes_up), new) {
                 (Some((old, s)), Some(new)) if self.keeps(seen, (&old, s), &new) => Some((old, s)),
                 (_, new) => new.map(|way| (way, 0.0)),
             };
@@ -125,6 +128,17 @@ impl Reference {
         }
         self.plan = None;
         Some(steer(seen, &lane, 0.0, self.robot.v_max_mps, &self.robot))
+    }
+
+    /// Whether it drives up to whoever stands in the middle of its way instead of round them: it is to be blocked by somebody first.
+    /// Among several it does not, who would shut it in.
+    fn comes_up(&self, seen: &Observation<'_>) -> bool {
+        let mut near = seen.people.iter().filter(|person| (person.at - seen.pose.point()).norm() < PEOPLE_M);
+        let (Some(person), None) = (near.next(), near.next()) else { return false };
+        let (s, aside) = self.route.project_within(&person.at, self.s, self.s + PEOPLE_M);
+        let stands = person.velocity.norm() < STANDING_MPS;
+        let in_way = s > self.s && aside < self.robot.radius_m + person.radius_m - BLOCKS_M;
+        self.script.is_to_be_blocked() && stands && in_way
     }
 
     /// A way round, where the route ahead is not free of people or the robot is off it.

@@ -34,6 +34,9 @@ pub(crate) struct Script {
     hold_until_s: f64,
     /// What it waits for, with its memory of being blocked, s.
     waits_for: Option<(RobotWhen, f64)>,
+    /// For how long it has to be blocked before it does what it does then, and how long it has been, s; none once it has been, or
+    /// where it does nothing then.
+    blocked_s: Option<(f64, f64)>,
     wish: Wish,
 }
 
@@ -41,11 +44,20 @@ impl Script {
     pub(crate) fn new(rules: &[RobotRule], encounters: &BTreeMap<HumanId, Point>) -> Self {
         let lines =
             rules.iter().filter(|rule| !matches!(rule.act, RobotDo::Say(_))).map(|rule| (rule.clone(), 0.0, false));
+        let blocked = rules.iter().filter_map(|rule| match rule.when {
+            RobotWhen::Blocked(secs) => Some(secs),
+            RobotWhen::Start
+            | RobotWhen::HumanNear(_)
+            | RobotWhen::HumanSays(_)
+            | RobotWhen::AtEncounter(_)
+            | RobotWhen::AfterSecs(_) => None,
+        });
         Self {
             lines: lines.collect(),
             encounters: encounters.clone(),
             hold_until_s: 0.0,
             waits_for: None,
+            blocked_s: blocked.reduce(f64::max).map(|secs| (secs, 0.0)),
             wish: Wish::default(),
         }
     }
@@ -54,6 +66,11 @@ impl Script {
     pub(crate) fn step(&mut self, seen: &Observation<'_>, dt: f64) -> Wish {
         let now = seen.time.secs();
         let encounters = &self.encounters;
+        if let Some((secs, held_s)) = &mut self.blocked_s
+            && holds(&RobotWhen::Blocked(*secs), held_s, encounters, seen, dt)
+        {
+            self.blocked_s = None;
+        }
         if let Some((until, held_s)) = &mut self.waits_for
             && (holds(until, held_s, encounters, seen, dt) || now >= self.hold_until_s)
         {
@@ -81,6 +98,11 @@ impl Script {
         }
         self.wish.hold = now < self.hold_until_s;
         self.wish
+    }
+
+    /// Whether it still has something to do for which somebody has to block it.
+    pub(crate) const fn is_to_be_blocked(&self) -> bool {
+        self.blocked_s.is_some()
     }
 
     /// Everybody who leaves is out.

@@ -227,3 +227,19 @@ fn before_somebody_who_does_not_let_it_pass_the_reference_stops_dodging_and_asks
     assert!(pose.yaw.abs() < 0.6, "turned by {}", pose.yaw);
     assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "let through, it goes on to its goal");
 }
+
+#[test]
+fn a_robot_that_is_to_be_blocked_drives_up_to_whoever_stands_in_its_way_and_then_round_them() {
+    let says = RobotRule { when: RobotWhen::Blocked(2.0), act: RobotDo::Say(Gesture::ExcuseMe) };
+    let standing = |script: Vec<RobotRule>| {
+        let mut driver = make("reference", &mission(script)).unwrap().unwrap();
+        let way = drive(driver.as_mut(), &|_| vec![person(10.0, 3.0, 0.0, 0.0)], 60.0);
+        let before = way
+            .iter()
+            .filter(|(pose, command)| (pose.y - 3.0).abs() < 0.2 && (8.4..10.0).contains(&pose.x) && command.v < 0.05);
+        assert!(way.last().unwrap().0.x > 17.0, "it gets to its goal");
+        before.count()
+    };
+    let (blocked, free) = (standing(vec![says]), standing(vec![]));
+    assert!(blocked >= 40 && free < 20, "calls that it stands: {blocked}, {free}");
+}
