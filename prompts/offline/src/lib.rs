@@ -120,6 +120,8 @@ mod unfit;
 #[cfg(test)]
 mod again_tests;
 #[cfg(test)]
+mod aside_tests;
+#[cfg(test)]
 mod cut_tests;
 #[cfg(test)]
 mod mention_tests;

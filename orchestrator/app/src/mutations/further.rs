@@ -1,7 +1,7 @@
 //! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
 
 /// Every one.
-pub(super) const FURTHER: [(&str, &str); 26] = [
+pub(super) const FURTHER: [(&str, &str); 30] = [
     (
         "meets twice",
         r#"location = "office"
@@ -366,6 +366,63 @@ goal = "elevator"
 
 [robot]
 goal = "elevator"
+"#,
+    ),
+    (
+        "a bystander has the robot wait",
+        r#"location = "office"
+task = "Deliver a parcel"
+
+[[human]]
+id = "guard"
+relation = "aside"
+place = "corridor"
+does = [{ when = { robot_near = 5.0 }, say = "WAIT", to = "robot" }, { when = { done = "visitor" }, say = "PROCEED", to = "robot" }]
+
+[[human]]
+id = "visitor"
+relation = "crossing"
+"#,
+    ),
+    (
+        "a group makes room",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+count = 3
+relation = "static"
+place = "corridor"
+group = "chat"
+does = [{ when = { robot_says = "EXCUSE_ME" }, act = "make_room" }]
+
+[robot]
+does = [{ when = { human_near = 3.0 }, say = "EXCUSE_ME" }]
+"#,
+    ),
+    (
+        "somebody makes room",
+        r#"location = "warehouse"
+task = "Deliver a parcel"
+
+[[human]]
+relation = "static"
+place = "narrow_passage"
+does = [{ when = { robot_near = 3.0 }, act = "make_room" }]
+"#,
+    ),
+    (
+        "there and back",
+        r#"location = "office"
+task = "Bring the mail to the reception"
+
+[[human]]
+relation = "frontal"
+place = "corridor"
+does = [{ when = { robot_visible = 5.0 }, act = "approach", near_m = 0.8, for_s = 4 }]
+
+[robot]
+return = true
 "#,
     ),
 ];
