@@ -76,7 +76,9 @@ fn whoever_stands_on_a_side_does_so_away_from_where_somebody_comes_towards_the_r
     let mut both = proposal(PlaceClass::Corridor, &[Relation::Static, Relation::Frontal]);
     both.humans[0].side = Some(Side::Left);
     for draw in 0..4 {
-        let paths = solve(&Problem { draw, ..Problem::of(&both, &location, "test".into()) }).unwrap().paths;
+        let open = Problem::of(&both, &location, "test".into());
+        let (starts, goals) = (vec![node("b0")], vec![node("b6")]);
+        let paths = solve(&Problem { draw, starts, goals, ..open }).unwrap().paths;
         let at = |number| {
             let met = paths.encounters.iter().find(|encounter| encounter.human == HumanId::new(number)).unwrap();
             location.graph.node(&met.node).unwrap().at

@@ -187,17 +187,18 @@ fn somebody_who_has_come_no_way_yet_turns_back_to_where_they_came_from_before() 
 fn somebody_whom_something_led_off_their_way_turns_back_as_they_walked() {
     let me = HumanId::new(1);
     let rules = vec![
-        Rule { for_s: Some(6.0), ..step(1, 1, &[Trigger::RobotNear(3.0)], Action::FollowRobot) },
+        Rule { for_s: Some(12.0), ..step(1, 1, &[Trigger::RobotNear(3.0)], Action::FollowRobot) },
         Rule { until: vec![Trigger::GoalReached], ..step(1, 2, &[], Action::TurnBack) },
     ];
     let recording = run(setup(
-        corridor(),
-        &["a", "b", "c", "d", "e"],
-        &[Cast(Relation::Frontal, &["d", "c", "b"], rules)],
-        &[(1, "c")],
+        crossing(),
+        &["w", "w2", "m", "e2", "e"],
+        &[Cast(Relation::Crossing, &["s", "m", "n"], rules)],
+        &[(1, "m")],
     ));
     let turned = time(&recording, &EventKind::StepEnded { human: me, step: 1 }).expect("they follow");
     let x = |t: f64| recording.tick((t * 100.0) as usize)[1].x;
+    assert!(x(turned) > 14.0, "they follow the robot off their way: {}", x(turned));
     assert!(x(turned) - x(turned + 4.0) > 2.0, "{} to {}", x(turned), x(turned + 4.0));
 }
 
