@@ -85,6 +85,32 @@ impl Polyline {
         self.project_within(point, 0.0, self.length_m())
     }
 
+    /// Length at which a way turns that leads back from there along itself to where it began, m; nothing of any other way.
+    #[must_use]
+    pub fn turn_m(&self) -> Option<f64> {
+        let half = 0.5 * self.length_m();
+        let closed = (self.point(0.0) - self.end()?).norm() < Self::CLOSED_M && half > 4.0 * Self::TURN_M;
+        let folds = self.direction(half - Self::TURN_M).dot(&self.direction(half + Self::TURN_M)) < -0.9;
+        (closed && folds).then_some(half)
+    }
+
+    /// How far somebody has got along a way who was at `s` before, and how far they are off it, m: looked for between `back` behind
+    /// and `ahead` of it. Before the turn of a way there and back what lies behind the turn is not taken for it.
+    #[must_use]
+    pub fn progress(&self, point: &Point, s: f64, (back, ahead): (f64, f64)) -> (f64, f64) {
+        let (from, to) = (s - back, s + ahead);
+        match self.turn_m() {
+            None => self.project_within(point, from, to),
+            Some(turn) if s < turn - Self::TURN_M => self.project_within(point, from, to.min(turn)),
+            Some(turn) => self.project_within(point, from.max(turn - Self::TURN_M), to),
+        }
+    }
+
+    /// A way ends where it began within this distance, m.
+    const CLOSED_M: f64 = 0.5;
+    /// So far before and after its turn the directions are compared, and so near to it both sides of it count, m.
+    const TURN_M: f64 = 0.4;
+
     /// As [`Polyline::project`], but only between the lengths `from` and `to`: a way that comes back to
     /// itself is not cut short.
     #[must_use]
@@ -157,6 +183,19 @@ mod tests {
         let (s, _) = corner().project_within(&Point::new(2., 1.), 4.5, 6.0);
         assert!((4.5..=6.0).contains(&s));
         assert!(corner().lateral_m(&Point::new(2., 1.), 2.0) > 0.99);
+    }
+
+    #[test]
+    fn a_way_there_and_back_is_walked_once_in_each_direction() {
+        let points = [(0., 0.), (6., 0.), (6., 3.), (6., 0.), (0., 0.)].map(|(x, y)| Point::new(x, y));
+        let way = Polyline::new(&points);
+        assert_eq!((way.turn_m(), corner().turn_m()), (Some(9.0), None));
+        // One meter before the turn, and one meter behind it, the place is the same.
+        let at = Point::new(6., 2.);
+        assert!((way.progress(&at, 7.5, (0.3, 3.0)).0 - 8.0).abs() < 1e-12);
+        assert!((way.progress(&at, 9.2, (0.3, 3.0)).0 - 10.0).abs() < 1e-12);
+        let start = Point::new(0.1, 0.);
+        assert!((way.progress(&start, 0.0, (0.3, 30.0)).0 - 0.1).abs() < 1e-12);
     }
 
     #[test]

@@ -30,9 +30,12 @@ fn a_bystander_stands_aside() {
 #[test]
 fn how_close_somebody_comes_and_whom_they_look_at_is_read() {
     assert_eq!(acts("A child in the corridor walks right up to the robot."), [Action::ApproachTo(0.8)]);
-    let looks = acts("A nurse stands in the corridor. A visitor walks towards the robot, stops and looks at the nurse.");
+    let looks =
+        acts("A nurse stands in the corridor. A visitor walks towards the robot, stops and looks at the nurse.");
     assert!(looks.contains(&Action::LookAt(HumanId::new(1))), "{looks:?}");
-    assert!(acts("Three visitors stand in the corridor and step apart when the robot is near.").contains(&Action::MakeRoom));
+    assert!(
+        acts("Three visitors stand in the corridor and step apart when the robot is near.").contains(&Action::MakeRoom)
+    );
 }
 
 #[test]

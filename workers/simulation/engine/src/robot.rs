@@ -104,7 +104,7 @@ impl Robot {
         self.has_moved |= moves;
         self.stood_s = if self.has_moved && !moves { self.stood_s + STEP_SECS } else { 0.0 };
         let before = self.s;
-        let (s, aside) = self.route.project_within(&at, self.s - 0.3, self.s + 3.0);
+        let (s, aside) = self.route.progress(&at, self.s, (0.3, 3.0));
         if aside < OFF_WAY_M {
             self.s = s.max(self.s - 0.02);
         } else {

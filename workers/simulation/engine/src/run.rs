@@ -325,7 +325,7 @@ impl Engine {
             let full = there.any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
             // It may have come there by another way than the intended one; then it says so by resting there.
             // A way that ends where it began has led there only once most of it is behind the robot.
-            let led = (robot.route.point(0.0) - end).norm() > AROUND_GOAL_M || robot.s > 0.5 * robot.route.length_m();
+            let led = robot.route.turn_m().is_none_or(|turn| robot.s > turn);
             let rests = led && left < AT_GOAL_M && robot.command.waiting && robot.has_moved;
             let stands = (rests || led && full && left < AROUND_GOAL_M) && robot.velocity.norm() < 0.05;
             robot.at_full_goal_s = if stands { robot.at_full_goal_s + STEP_SECS } else { 0.0 };

@@ -19,8 +19,6 @@ const ROUNDING_M: f64 = 0.005;
 const PERSONAL_M: f64 = 0.45;
 /// Gap to somebody who walks that is kept even at a crawl, m.
 const CLOSE_M: f64 = 0.36;
-/// A way that begins and ends this near to one place leads there and back, m.
-const CLOSED_M: f64 = 0.5;
 /// How far ahead in time people are looked at, s.
 const HORIZON_S: f64 = 2.6;
 
@@ -38,12 +36,11 @@ pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, 
     Command { v, omega: if left < 0.08 { 0.0 } else { omega }, gesture: None, waiting: false }
 }
 
-/// How far the end of a way is, m; in the first half of one that ends where it began, so much as is left of it.
+/// How far the end of a way is, m; before the turn of one there and back, so much as is left of it.
 pub(crate) fn left_m(way: &Polyline, at: &Point, s: f64) -> f64 {
     let end = way.end().unwrap_or(*at);
     let straight = (end - at).norm();
-    let closed = (way.point(0.0) - end).norm() < CLOSED_M;
-    if closed && s < 0.5 * way.length_m() { straight.max(way.length_m() - s) } else { straight }
+    if way.turn_m().is_some_and(|turn| s < turn) { straight.max(way.length_m() - s) } else { straight }
 }
 
 /// As [`steer`], without cutting a corner: to the farthest point a little ahead that can be reached straight, and never faster

@@ -304,7 +304,7 @@ impl RobotDriver for Reference {
     fn drive(&mut self, seen: &Observation<'_>) -> Command {
         let at = seen.pose.point();
         self.ground.look(seen);
-        let (s, aside) = self.route.project_within(&at, self.s, self.s + 2.5);
+        let (s, aside) = self.route.progress(&at, self.s, (0.0, 2.5));
         if aside < 2.5 {
             self.s = s.max(self.s);
         }
