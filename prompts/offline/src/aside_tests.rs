@@ -34,7 +34,8 @@ fn how_close_somebody_comes_and_whom_they_look_at_is_read() {
         acts("A nurse stands in the corridor. A visitor walks towards the robot, stops and looks at the nurse.");
     assert!(looks.contains(&Action::LookAt(HumanId::new(1))), "{looks:?}");
     assert!(
-        acts("Three visitors stand in the corridor and step apart when the robot is near.").contains(&Action::MakeRoom)
+        acts("Three visitors stand in the corridor and open their circle when the robot is near.")
+            .contains(&Action::MakeRoom)
     );
 }
 
@@ -44,7 +45,7 @@ fn a_way_back_is_part_of_the_robots_way_unless_it_leads_elsewhere() {
         let reading = reading(task, "A nurse walks towards the robot in the corridor.");
         let played =
             reading.facts.iter().any(|fact| matches!(fact.kind, FactKind::RobotAt { part: WayPart::Back, .. }));
-        (played, reading.problems.iter().any(|fault| fault.message.contains("another way on is not played")))
+        (played, reading.problems.iter().any(|fault| fault.message.to_string().contains("another way on")))
     };
     assert_eq!(back("Bring pills to the pharmacy and come back."), (true, false));
     assert_eq!(back("Bring pills to the pharmacy and then go back to the exit."), (false, true));

@@ -50,6 +50,7 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
     let mut task = Task::default();
     let (returns, first): (Vec<Stretch>, Vec<Stretch>) =
         sentences(text).into_iter().flatten().partition(|stretch| comes_back(stretch).is_some());
+    let alone = first.is_empty();
     for stretch in first {
         errand(&mut task, stretch, text, location);
     }
@@ -69,7 +70,8 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             let to = onward.goals.get(task.goals.len()..).unwrap_or_default();
             let home = |end: &End| nodes(&task.starts) == end.nodes && !end.nodes.is_empty();
             let elsewhere = onward.goal != task.goal || onward.via != task.via;
-            task.comes_home = if to.is_empty() { !elsewhere } else { to.iter().all(home) };
+            // `Return` alone says of no errand where from.
+            task.comes_home = !alone && if to.is_empty() { !elsewhere } else { to.iter().all(home) };
             task.back.get_or_insert(quote);
             task.denied = onward.denied;
         }

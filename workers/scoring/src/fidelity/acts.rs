@@ -428,7 +428,7 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
         Action::FollowRobot | Action::FollowHuman(_) => way_m() >= FOLLOWS_M,
         Action::Approach | Action::ApproachTo(_) => way_m() >= GOES_M,
         Action::RunAway => most(begin.away(), false) >= GOES_M,
-        Action::GiveWay => {
+        Action::GiveWay | Action::MakeRoom => {
             let facing = begin.robot.facing();
             most(Vector::new(-facing.y, facing.x), true) >= GOES_M
         }
@@ -438,13 +438,7 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
             let turned_rad = if signals.tells_leaves { TURNED_LITTLE_RAD } else { TURNED_RAD };
             stops_or_turns(signals, human, (from, to), turned_rad)
         }
-        Action::Navigate
-        | Action::StandStill
-        | Action::Block
-        | Action::LookAt(_)
-        | Action::ChangePace { .. }
-        // Of a group that makes room some stand beside the line already: the clause of the act says that somebody of it goes.
-        | Action::MakeRoom => true,
+        Action::Navigate | Action::StandStill | Action::Block | Action::LookAt(_) | Action::ChangePace { .. } => true,
     }
 }
 

@@ -96,18 +96,12 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     }
 }
 
-/// The human makes way as the robot passes, and closes up again. Of a group those who stand beside the line already may stay where
-/// they are, as long as somebody of it goes.
+/// The human makes way as the robot passes, and closes up again: everybody of a group goes for it.
 pub(super) fn makes_room(signals: &Signals<'_>, human: HumanId) -> Finding {
     let (since, pass) = match passed(signals, human, &Action::MakeRoom) {
         Ok(found) => found,
         Err(finding) => return finding,
     };
-    let humans = signals.evidence.proposal.map_or(&[][..], |proposal| &proposal.humans);
-    let group = humans.iter().find(|one| one.id == human).and_then(|one| one.group);
-    let mates = humans.iter().filter(|one| group.is_some() && one.group == group && one.id != human);
-    let by_mates = mates.filter_map(|one| Some(passed(signals, one.id, &Action::MakeRoom).ok()?.1.moved()));
-    let moved = by_mates.fold(pass.moved(), f64::max);
     let Some(track) = signals.tracks.human(human) else { return Finding::not_applicable("nobody is recorded") };
     let stood = track.at(since.secs().max(0.0)).or_else(|| track.samples.first().copied());
     let Some(stood) = stood else { return Finding::not_applicable("the recording is empty") };
@@ -124,7 +118,7 @@ pub(super) fn makes_room(signals: &Signals<'_>, human: HumanId) -> Finding {
         nearest.0,
         nearest.1
     );
-    Finding::by_margin((pass.aside_m - ASIDE_M).min(moved).min(back), vec![nearest.1, pass.at_s], text)
+    Finding::by_margin((pass.aside_m - ASIDE_M).min(pass.moved()).min(back), vec![nearest.1, pass.at_s], text)
 }
 
 /// The human stands beside the robot's way all the time.
