@@ -347,6 +347,9 @@ mod tests {
                 "turn_back",
                 "go_to",
                 "change_pace",
+                "make_room",
+                "makes_room",
+                "approach_to",
                 "hold_until",
             ];
             for alternative in found.into_iter().filter(|name| !untold.contains(&name.as_str())) {

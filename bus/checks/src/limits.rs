@@ -83,6 +83,27 @@ fn busy_s(human: HumanId, proposal: &Proposal) -> f64 {
     rules.filter_map(|rule| rule.for_s).filter(|secs| secs.is_finite()).sum::<f64>().clamp(0.0, LASTS_S.1)
 }
 
+/// How many people walk by, how near, and in which band of angles.
+fn flow(count: u32, within_m: f64, [least, most]: [f64; 2]) -> [Limit; 5] {
+    [
+        plain("count", f64::from(count), (1.0, f64::INFINITY)),
+        meters("within_m", within_m, (0.5, 12.0)),
+        plain("angle_deg, smallest,", least, (0.0, 180.0)),
+        plain("angle_deg, largest,", most, (0.0, 180.0)),
+        plain("angle_deg, largest less smallest,", most - least, (0.0, BAND_DEG)),
+    ]
+}
+
+/// How many people per square meter are in a disc.
+fn density([least, most]: [f64; 2], radius_m: f64) -> [Limit; 3] {
+    [
+        // At least somebody is in the disc.
+        plain("per_m2, smallest,", least, (0.5 / (PI * radius_m * radius_m).max(0.1), CROWD_PER_M2)),
+        plain("per_m2, largest less smallest,", most - least, (0.0, CROWD_PER_M2)),
+        meters("radius_m", radius_m, (0.5, 8.0)),
+    ]
+}
+
 /// The numbers of a predicate.
 fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
     let for_s = |value: f64| secs("for_s", value, LASTS_S);
@@ -119,20 +140,10 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::Blocks { for_s: time, .. }
         | Predicate::Looks { for_s: time, .. }
         | Predicate::StandsStill { for_s: time, .. } => vec![for_s(*time)],
-        Predicate::Flow { count, within_m, angle_deg: [least, most] } => vec![
-            plain("count", f64::from(*count), (1.0, f64::INFINITY)),
-            meters("within_m", *within_m, (0.5, 12.0)),
-            plain("angle_deg, smallest,", *least, (0.0, 180.0)),
-            plain("angle_deg, largest,", *most, (0.0, 180.0)),
-            plain("angle_deg, largest less smallest,", most - least, (0.0, BAND_DEG)),
-        ],
-        Predicate::Density { per_m2: [least, most], radius_m, for_s: time } => vec![
-            // At least somebody is in the disc.
-            plain("per_m2, smallest,", *least, (0.5 / (PI * radius_m * radius_m).max(0.1), CROWD_PER_M2)),
-            plain("per_m2, largest less smallest,", most - least, (0.0, CROWD_PER_M2)),
-            meters("radius_m", *radius_m, (0.5, 8.0)),
-            for_s(*time),
-        ],
+        Predicate::Flow { count, within_m, angle_deg } => Vec::from(flow(*count, *within_m, *angle_deg)),
+        Predicate::Density { per_m2, radius_m, for_s: time } => {
+            density(*per_m2, *radius_m).into_iter().chain([for_s(*time)]).collect()
+        }
         Predicate::Surrounds { count, within_m, for_s: time } => vec![
             plain("count", f64::from(*count), (1.0, f64::INFINITY)),
             meters("within_m", *within_m, (0.5, 8.0)),

@@ -516,10 +516,7 @@ fn a_way_over_a_place_and_a_way_back_are_not_lost() {
     let location = map("office");
     let reading = read(&request("Deliver mail to the kitchen via the intersection and come back", None), &location);
     assert!(reading.notes.iter().any(|note| note.contains("intersection")), "{:?}", reading.notes);
-    let back = |fact: &socrates_model::Fact| {
-        matches!(fact.kind, FactKind::RobotAt { part: socrates_model::proposal::WayPart::Back, .. })
-    };
-    assert!(reading.facts.iter().any(back), "{:?}", reading.facts);
+    assert!(format!("{:?}", reading.facts).contains("part: Back"), "{:?}", reading.facts);
     let reading = read(&request("Deliver mail via the elevator", None), &location);
     assert!(reading.problems.iter().any(|fault| fault.code == FaultCode::PPlace), "{:?}", reading.problems);
 }

@@ -32,6 +32,7 @@ mod ending;
 mod ends;
 mod gathering;
 mod gaze;
+mod give_way;
 mod human;
 mod make_room;
 mod meetings;

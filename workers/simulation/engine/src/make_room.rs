@@ -6,8 +6,9 @@
 
 use socrates_model::{Point, Polyline, Vector};
 
+use crate::give_way::{self, aside_spot};
 use crate::human::Human;
-use crate::motion::{self, Scene, Want, aside_spot, round};
+use crate::motion::{Scene, Want, round};
 use crate::near::Other;
 
 /// Somebody ahead is face to face with us nearer than this, m.
@@ -97,7 +98,7 @@ fn spot(human: &Human, scene: &Scene<'_>, other: &Other) -> Option<Point> {
     let toward = human.at - other.at;
     let ahead = toward / toward.norm().max(0.1);
     let line = Polyline::new(&[other.at - ahead * 4.0, other.at + ahead * (BACK_M + FACE_M)]);
-    let beside = aside_spot(human, scene, motion::ASIDE_M, &|point| line.project(point).1);
+    let beside = aside_spot(human, scene, give_way::ASIDE_M, &|point| line.project(point).1);
     if line.project(&beside).1 >= ASIDE_M && (beside - human.at).dot(&-ahead) < 0.3 {
         return Some(beside);
     }
