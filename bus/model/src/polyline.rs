@@ -89,9 +89,10 @@ impl Polyline {
     #[must_use]
     pub fn turn_m(&self) -> Option<f64> {
         let half = 0.5 * self.length_m();
-        let closed = (self.point(0.0) - self.end()?).norm() < Self::CLOSED_M && half > 4.0 * Self::TURN_M;
-        let folds = self.direction(half - Self::TURN_M).dot(&self.direction(half + Self::TURN_M)) < -0.9;
-        (closed && folds).then_some(half)
+        let closed = (self.points.first()? - self.end()?).norm() < Self::CLOSED_M && half > 4.0 * Self::TURN_M;
+        // Hardly any way is closed: the rest is asked of those alone.
+        let folds = || self.direction(half - Self::TURN_M).dot(&self.direction(half + Self::TURN_M)) < -0.9;
+        (closed && folds()).then_some(half)
     }
 
     /// How far somebody has got along a way who was at `s` before, and how far they are off it, m: looked for between `back` behind

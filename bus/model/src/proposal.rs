@@ -49,6 +49,12 @@ impl Relation {
             Self::Aside => "aside",
         }
     }
+
+    /// Whether somebody stands by it, and walks only where an act of theirs leads them.
+    #[must_use]
+    pub const fn stands(self) -> bool {
+        matches!(self, Self::Static | Self::Staying | Self::Aside)
+    }
 }
 
 /// A side of the robot's way as it drives.

@@ -86,6 +86,9 @@ pub enum Action {
 }
 
 impl Action {
+    /// Whoever comes up to the robot as near as a distance is at most so much farther away, m.
+    pub const CLOSE_M: f64 = 0.15;
+
     /// Whether it is one of those that only steps of a form have.
     #[must_use]
     pub const fn is_of_steps(&self) -> bool {

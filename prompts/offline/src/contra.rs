@@ -2,7 +2,7 @@
 //!
 //! What one clause says is held against what others said; both are quoted, and the request waits for a person.
 
-use socrates_model::{Action, Fault, FaultCode, PlaceClass, Relation, Trigger, Where};
+use socrates_model::{Action, Fault, FaultCode, PlaceClass, Trigger, Where};
 
 use crate::clause::{self, Found};
 use crate::cut::{Joint, Stretch, sentences};
@@ -190,7 +190,7 @@ pub(crate) fn place(
     for who in people {
         let moves = story.cast.people.get(who).is_none_or(|person| {
             let relation = person.relation.as_ref().map(|(relation, _)| *relation);
-            !matches!(relation, None | Some(Relation::Static | Relation::Staying))
+            relation.is_some_and(|relation| !relation.stands())
         });
         let known = story.held.places.iter().find(|(other, old, _)| *other == who && apart(*old, *class) && !moves);
         if let Some((_, _, first)) = known {

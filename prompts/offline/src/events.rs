@@ -25,9 +25,6 @@ const CORNER_M: f64 = 5.0;
 /// Largest difference of arrival where ways cross and no card says, s.
 const GAP_S: f64 = 4.0;
 
-/// Somebody who comes as near to the robot as a distance is at most so much farther away, m.
-const CLOSE_M: f64 = 0.15;
-
 /// So many follow the robot within the usual distance, and each one more so much farther behind it, m.
 const FEW_FOLLOW: usize = 3;
 const QUEUE_M: f64 = 0.5;
@@ -323,7 +320,7 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         Action::RunAway => Some(Predicate::RunsAway { human: id, by_m: 1.0 }),
         Action::GiveWay => Some(Predicate::GivesWay { human: id }),
         Action::MakeRoom => Some(Predicate::MakesRoom { human: id }),
-        Action::ApproachTo(near_m) => Some(Predicate::Meets { human: id, within_m: near_m + CLOSE_M }),
+        Action::ApproachTo(near_m) => Some(Predicate::Meets { human: id, within_m: near_m + Action::CLOSE_M }),
         Action::Block => Some(Predicate::Blocks { human: id, for_s: lasts(2.5) }),
         Action::LookAtRobot => Some(Predicate::Looks { human: id, for_s: lasts(2.0) }),
         Action::Approach => Some(Predicate::Meets { human: id, within_m: 2.0 }),

@@ -85,7 +85,7 @@ pub(crate) fn fact(
     problems: &mut Vec<Fault>,
 ) -> Option<(String, FactKind)> {
     let (facing, quote) = person.facing.as_ref()?;
-    let stands = matches!(relation, Some(Relation::Static | Relation::Staying | Relation::Aside));
+    let stands = relation.is_some_and(Relation::stands);
     if !stands || person.group.is_some() {
         short::unplayed(problems, quote, "where somebody faces who walks, or stands in a group,");
         return None;

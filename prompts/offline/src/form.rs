@@ -33,6 +33,13 @@ pub(crate) struct Bound {
     pub(crate) nodes: Vec<NodeId>,
 }
 
+impl Bound {
+    /// Its nodes: those of the place by name, or all of its class.
+    pub(crate) fn all_nodes(self, location: &Location) -> Vec<NodeId> {
+        if self.nodes.is_empty() { socrates_maps::place::nodes_of(location, self.class) } else { self.nodes }
+    }
+}
+
 /// Binds a place of a form; nothing where the map has none of that name or class.
 pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
     match place {
@@ -309,12 +316,7 @@ pub(crate) fn facts(request: &Request, location: &Location) -> Vec<(String, Fact
         }
         let goal = human.goal.as_ref().and_then(|goal| Some((goal, bound(goal, location)?)));
         if let Some((goal, place)) = goal {
-            let nodes = if place.nodes.is_empty() {
-                socrates_maps::place::nodes_of(location, place.class)
-            } else {
-                place.nodes
-            };
-            let kind = FactKind::Goal { human: id, name: goal.to_string(), nodes };
+            let kind = FactKind::Goal { human: id, name: goal.to_string(), nodes: place.all_nodes(location) };
             found.push((format!("human {name}: goal = \"{goal}\""), kind));
         }
     }
@@ -331,7 +333,7 @@ fn walks(relation: Relation, rules: &[Rule]) -> bool {
     let follows = |rule: &Rule| {
         rule.when == [Trigger::Always] && matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_))
     };
-    !matches!(relation, Relation::Static | Relation::Staying) && !rules.iter().any(follows)
+    !relation.stands() && !rules.iter().any(follows)
 }
 
 /// Where the robot goes, unless stated, of which somebody gets through a door before or after it, or waits inside.

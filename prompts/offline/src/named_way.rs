@@ -34,8 +34,11 @@ pub(crate) fn rest(task: &Task, request: &Request, location: &Location, reading:
         if by_class && matches!(part, WayPart::Start | WayPart::Goal) {
             continue;
         }
-        let nodes = if by_class { socrates_maps::place::nodes_of(location, bound.class) } else { bound.nodes };
-        add(reading, (part, place.to_string(), nodes), format!("robot.{} = \"{place}\"", part.name()));
+        add(
+            reading,
+            (part, place.to_string(), bound.all_nodes(location)),
+            format!("robot.{} = \"{place}\"", part.name()),
+        );
     }
     let back = task.back.as_ref().filter(|_| task.comes_home).cloned();
     if let Some(quote) = robot.returns.then(|| "robot.return = true".to_owned()).or(back) {

@@ -182,7 +182,7 @@ fn proposed(
         | Relation::Abreast
         | Relation::Aside => None,
     };
-    let moves = !matches!(relation, Relation::Static | Relation::Staying | Relation::Aside);
+    let moves = !relation.stands();
     let usual = match relation {
         Relation::Ahead => Some(extra.speed_mps.map_or(0.5, |speed| speed.min(AHEAD_MPS))),
         Relation::Behind if overtakes(relation, &human.rules) => {

@@ -111,8 +111,7 @@ fn before(net: &Net<'_>, places: &[usize]) -> Vec<usize> {
 fn at_meant(scene: &Scene<'_>, wish: &Wish, meant: &[usize]) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
     let wish = &Wish { indoors: true, ..*wish };
-    let moves =
-        |human: &HumanProposal| !matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside);
+    let moves = |human: &HumanProposal| !human.relation.stands();
     let mut found = at_nodes(scene, wish, meant);
     if proposal.humans.iter().any(|human| !moves(human)) {
         let walkers = proposal.humans.iter().any(moves);

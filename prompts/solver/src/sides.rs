@@ -2,7 +2,7 @@
 
 use socrates_maps::Ground;
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{HumanProposal, Relation, Side};
+use socrates_model::{HumanProposal, Point, Relation, Side};
 
 use crate::graph::Net;
 use crate::robot_way::Route;
@@ -30,16 +30,20 @@ pub(crate) fn enters(net: &Net<'_>, route: &Route, human: &HumanProposal, entry:
 /// Whether a room lies on the side of the robot's way that the proposal names.
 pub(crate) fn lies(net: &Net<'_>, route: &Route, human: &HumanProposal, node: usize) -> bool {
     let Some(side) = human.side else { return true };
-    let at = net.at(node);
+    let (_, left_m) = beside(net, route, &net.at(node));
+    side.sign() * left_m >= ROOM_M
+}
+
+/// How far a point is from the robot's way, and how far to the left of it, m.
+pub(crate) fn beside(net: &Net<'_>, route: &Route, at: &Point) -> (f64, f64) {
     let pieces = route.nodes.windows(2).filter_map(|pair| {
         let &[a, b] = pair else { return None };
         let (a, b) = (net.at(a), net.at(b));
-        let (off_m, nearest) = nearest_on_segment(&at, &a, &b);
+        let (off_m, nearest) = nearest_on_segment(at, &a, &b);
         let along = b - a;
         (along.norm() > 1e-9).then(|| (off_m, along.perp(&(at - nearest)) / along.norm()))
     });
-    let left_m = pieces.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, left_m)| left_m);
-    side.sign() * left_m >= ROOM_M
+    pieces.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0.0))
 }
 
 /// Whether there is floor for somebody on the side of the robot's way that the proposal names, about a node of it.

@@ -1,6 +1,6 @@
 //! What a report is made from.
 
-use socrates_model::{HumanId, Location, Paths, Point, Proposal, Reading, Recording, Relation, Request};
+use socrates_model::{HumanId, Location, Paths, Point, Proposal, Reading, Recording, Request};
 
 /// Everything known about one run. Only the recording is needed; what is missing is said in the report.
 #[derive(Debug, Clone, Copy)]
@@ -32,7 +32,7 @@ impl<'a> Evidence<'a> {
     #[must_use]
     pub fn stands(&self, human: HumanId) -> bool {
         let human = self.proposal.and_then(|proposal| proposal.human(human));
-        human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside))
+        human.is_some_and(|human| human.relation.stands())
     }
 
     /// Evidence of a recording alone.

@@ -99,7 +99,7 @@ impl Door<'_> {
         }
         let facing = section.get("facing").and_then(|_| self.word(&section, "facing")).map(FacingWord::from);
         if let (Some(facing), Some(relation)) = (&facing, relation) {
-            let stands = matches!(relation, Relation::Static | Relation::Staying | Relation::Aside);
+            let stands = relation.stands();
             if !stands || section.get("group").is_some() {
                 let found = if stands {
                     format!("`{facing}` of somebody in a group")

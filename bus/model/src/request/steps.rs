@@ -6,7 +6,6 @@ use super::tree::{Kind, Node, TextPlace};
 use super::words::Words;
 use crate::form::{Deed, Form, FormHuman, Pace, Step, When};
 use crate::gesture::Gesture;
-use crate::proposal::Relation;
 
 const STEP_KEYS: [&str; 8] = ["when", "act", "for_s", "until", "say", "to", "pace", "near_m"];
 /// How near somebody may come up to the robot, m: bodies touch at 0.55 m.
@@ -172,8 +171,7 @@ impl Door<'_> {
             return;
         }
         for (who, (human, node)) in form.humans.iter().zip(nodes).enumerate() {
-            let stands = matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
-                && human.goal.is_none();
+            let stands = human.relation.stands() && human.goal.is_none();
             for (number, step) in human.does.iter().enumerate() {
                 let at = place(node, "does", number);
                 if stands && matches!(step.act, Some(Deed::TurnBack | Deed::ChangePace)) {
@@ -325,9 +323,7 @@ fn never_ends(form: &Form, trigger: &When) -> Option<(String, String)> {
 }
 
 fn never_done(human: &FormHuman) -> bool {
-    human.does.is_empty()
-        && human.goal.is_none()
-        && matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
+    human.does.is_empty() && human.goal.is_none() && human.relation.stands()
 }
 
 /// Steps that have to be over before this one is: each with whoever does it.

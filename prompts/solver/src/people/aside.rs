@@ -1,12 +1,12 @@
 //! Aside: beside the robot's way, as near to where people meet as there is floor, and never in it.
 
 use socrates_maps::Ground;
-use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{HumanProposal, Point, Side, Vector};
 
 use super::{Taken, Way};
 use crate::graph::Net;
 use crate::robot_way::Route;
+use crate::sides;
 
 /// Free floor round somebody who stands, m: their body and a little.
 const STANDS_M: f64 = 0.36;
@@ -48,7 +48,7 @@ fn has_room(net: &Net<'_>, route: &Route, human: &HumanProposal, node: usize) ->
     });
     let mut spots = spots.filter(|at| free(at) && open(&home, at, &free));
     spots.any(|at| {
-        let (off_m, left_m) = beside(net, route, &at);
+        let (off_m, left_m) = sides::beside(net, route, &at);
         off_m >= Side::ASIDE_M && human.side.is_none_or(|side| side.sign() * left_m > 0.0)
     })
 }
@@ -58,16 +58,4 @@ fn open(from: &Point, to: &Point, free: &dyn Fn(&Point) -> bool) -> bool {
     let length = (to - from).norm();
     let steps = (0..).map(|step| STEP_M * f64::from(step)).take_while(|m| *m < length);
     steps.map(|m| from + (to - from) * (m / length)).all(|at| (at - from).norm() < STEP_M || free(&at))
-}
-
-/// How far a point is from the robot's way, and how far to the left of it, m.
-fn beside(net: &Net<'_>, route: &Route, at: &Point) -> (f64, f64) {
-    let pieces = route.nodes.windows(2).filter_map(|pair| {
-        let &[a, b] = pair else { return None };
-        let (a, b) = (net.at(a), net.at(b));
-        let (off_m, nearest) = nearest_on_segment(at, &a, &b);
-        let along = b - a;
-        (along.norm() > 1e-9).then(|| (off_m, along.perp(&(at - nearest)) / along.norm()))
-    });
-    pieces.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, 0.0))
 }

@@ -332,9 +332,6 @@ fn listeners(signals: &Signals<'_>, speaker: HumanId, gesture: Gesture) -> Vec<H
         .collect()
 }
 
-/// Whoever comes up to the robot as near as a distance is at most so much farther away, m.
-const CLOSE_M: f64 = 0.15;
-
 /// Marks of an action as the motion alone shows it, with the time for which it must be kept.
 pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
     let moments = signals.of(human);
@@ -365,7 +362,7 @@ pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> 
         Action::LookAt(id) => (addressed::watch_marks(signals, human, AgentId::Human(*id)), 0.5),
         Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_) => (speeds(|speed| speed - 0.1), 0.5),
         Action::ApproachTo(near_m) => {
-            let reach_m = near_m + CLOSE_M;
+            let reach_m = near_m + Action::CLOSE_M;
             (moments.iter().map(|m| Mark::new(m.t, reach_m - m.distance_m)).collect(), 0.3)
         }
         Action::Approach => {

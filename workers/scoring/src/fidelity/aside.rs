@@ -110,7 +110,6 @@ pub(super) fn makes_room(signals: &Signals<'_>, human: HumanId) -> Finding {
         .map(|sample| ((sample.at - stood.at).norm(), sample.t))
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .unwrap_or((f64::INFINITY, pass.at_s));
-    // Whoever never left is not back.
     let back = BACK_M - nearest.0;
     let text = format!(
         "{}; back within {:.2} m of where they stood at {:.1} s ({BACK_M} m within {BACK_SECS:.0} s asked)",

@@ -1,7 +1,7 @@
 //! From when on a clause counts that tells of a reaction: from the first time its reason holds. Whatever somebody does
 //! before, such as waiting behind a closed door until it is time to set off, is no reaction.
 
-use socrates_model::{Action, AgentId, HumanId, Relation, Rule, Trigger};
+use socrates_model::{Action, AgentId, HumanId, Rule, Trigger};
 
 use crate::fidelity::acts::spans;
 use crate::fidelity::finding::Finding;
@@ -67,7 +67,7 @@ pub(crate) fn since(signals: &Signals<'_>, human: HumanId, of: impl Fn(&Rule) ->
     let Some(person) = signals.evidence.proposal.and_then(|proposal| proposal.human(human)) else {
         return Ok(Since::START);
     };
-    let stands = matches!(person.relation, Relation::Static | Relation::Staying | Relation::Aside);
+    let stands = person.relation.stands();
     let rules: Vec<&Rule> = person.rules.iter().filter(|rule| of(rule)).collect();
     if rules.is_empty() || stands && rules.iter().all(|rule| rule.act == Action::StandStill && rule.gesture.is_none()) {
         return Ok(Since::START);

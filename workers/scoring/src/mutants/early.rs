@@ -2,7 +2,7 @@
 
 use socrates_maps::{Ground, sight_clear};
 use socrates_model::{
-    Action, AgentId, AgentState, Clause, ClauseRole, EventKind, Gesture, HumanId, Point, Predicate, Recording, Relation,
+    Action, AgentId, AgentState, Clause, ClauseRole, EventKind, Gesture, HumanId, Point, Predicate, Recording,
 };
 
 use super::edit::{Stood, ahead_of_time, delayed, gestures_from, reacts_first, stands_at, states, ticks_of};
@@ -69,9 +69,7 @@ fn before_reason(evidence: &Evidence<'_>, add: &mut Add<'_>) {
                 let reacts = matches!(&clause.predicate, Predicate::Reacts { human: who, act: of, .. } if *who == id && *of == act);
                 reacts || stands && act == Action::StandStill || looks && act == Action::LookAtRobot
             };
-            if matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
-                || !musts(evidence).any(asked)
-            {
+            if human.relation.stands() || !musts(evidence).any(asked) {
                 continue;
             }
             let reason = since(&signals, id, |rule| rule.act == act).ok().filter(|reason| reason.secs() >= REASON_SECS);

@@ -218,10 +218,7 @@ impl Human {
 
     /// Whether it never leaves its place by itself.
     pub(crate) fn stays(&self) -> bool {
-        self.route.length_m() < 0.05
-            || !self.diverted
-                && matches!(self.relation, Relation::Static | Relation::Staying | Relation::Aside)
-                && self.nodes.len() <= 1
+        self.route.length_m() < 0.05 || !self.diverted && self.relation.stands() && self.nodes.len() <= 1
     }
 }
 

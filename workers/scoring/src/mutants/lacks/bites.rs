@@ -122,8 +122,7 @@ fn for_a_reason(scene: &Scene<'_>, agent: AgentId, act: &Action) -> bool {
     let AgentId::Human(id) = agent else { return false };
     let Some(human) = scene.evidence.proposal.and_then(|proposal| proposal.human(id)) else { return false };
     let reason = |when: &[Trigger]| !when.iter().all(|trigger| *trigger == Trigger::Always);
-    !matches!(human.relation, Relation::Static | Relation::Staying | Relation::Aside)
-        && human.rules.iter().any(|rule| rule.act == *act && reason(&rule.when))
+    !human.relation.stands() && human.rules.iter().any(|rule| rule.act == *act && reason(&rule.when))
 }
 
 /// Whether to stand where one starts is not the thing.
