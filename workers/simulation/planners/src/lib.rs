@@ -11,6 +11,8 @@
 //! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number.
 
 pub mod catalog;
+pub mod controller;
+pub mod costmap;
 pub mod mission;
 
 mod detour;
