@@ -8,6 +8,8 @@
 //! | `ev/<batch>/<scenario>` | put, [`crate::Qos::Hint`] | numbered notices for viewers |
 //! | `live/orch/<id>`, `live/worker/<stage>/<instance>` | presence tokens | hastening |
 //! | `live/<run>/{meta,agents,ctl}` | put and query | live state of a run |
+//! | `drive/<name>/{mission,step}` | query, served by the driver of this name | a robot that is driven from outside |
+//! | `drive/<name>/claim/<id>` | presence token | the driver is there, and alone |
 
 use socrates_model::RunId;
 use socrates_model::job::Stage;
@@ -100,6 +102,30 @@ pub fn live_agents(run: &RunId) -> String {
 #[must_use]
 pub fn live_ctl(run: &RunId) -> String {
     format!("live/{}/ctl", chunk(run.as_str()))
+}
+
+/// The mission, the map and the end of every run of a driver: `driver::MissionMessage`, see `docs/wire.md`.
+#[must_use]
+pub fn drive_mission(driver: &str) -> String {
+    format!("drive/{}/mission", chunk(driver))
+}
+
+/// Every step of every run of a driver: `lockstep`, see `docs/wire.md`.
+#[must_use]
+pub fn drive_step(driver: &str) -> String {
+    format!("drive/{}/step", chunk(driver))
+}
+
+/// Presence token of a driver process.
+#[must_use]
+pub fn drive_claim(driver: &str, id: &str) -> String {
+    format!("drive/{}/claim/{}", chunk(driver), chunk(id))
+}
+
+/// Presence tokens of every process that drives under this name.
+#[must_use]
+pub fn drive_claims(driver: &str) -> String {
+    format!("drive/{}/claim/*", chunk(driver))
 }
 
 /// Free text as one chunk of a key: everything that is not a letter, digit, `.`, `_` or `-` becomes `%` and hex digits.
@@ -211,6 +237,7 @@ mod tests {
         all.extend(Stage::WORKERS.map(hint));
         all.extend([command("a b"), event("", "s"), worker_alive(Stage::Paths, "i"), orchestrator_alive("o")]);
         all.extend([live_meta(&run), live_agents(&run), live_ctl(&run)]);
+        all.extend([drive_mission("d"), drive_step("d"), drive_claim("d", "1")]);
         for key in &all {
             assert!(checked(key).is_ok(), "{key}");
         }

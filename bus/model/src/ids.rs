@@ -204,58 +204,10 @@ text_id!(
     |c| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-')
 );
 text_id!(
-    /// A planner under test, as requests and reports name it.
-    PlannerName, "planner name", 40, "1 to 40 of a-z A-Z 0-9 . _ -",
-    |c| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-')
-);
-text_id!(
     /// One simulated run: scenario, planner and seed in one word that is also a bus key chunk.
     RunId, "run id", 160, "1 to 160 of a-z A-Z 0-9 . _ -",
     |c| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-')
 );
-
-impl PlannerName {
-    /// Name of the planner that plays the robot script; it always runs.
-    pub const REFERENCE: &'static str = "reference";
-    /// Name of the planner that is no robot: the twin run.
-    pub const NO_ROBOT: &'static str = "none";
-
-    /// The planner that plays the robot script.
-    #[must_use]
-    pub fn reference() -> Self {
-        Self(Self::REFERENCE.to_owned())
-    }
-
-    /// The planner that is no robot.
-    #[must_use]
-    pub fn no_robot() -> Self {
-        Self(Self::NO_ROBOT.to_owned())
-    }
-
-    /// The robot of a `HuNavSim` agents file, which goes from way point to way point.
-    #[must_use]
-    pub fn waypoints() -> Self {
-        Self("waypoints".to_owned())
-    }
-
-    /// The robot of somebody's tracks: nobody knows what drove it.
-    #[must_use]
-    pub fn tracks() -> Self {
-        Self("tracks".to_owned())
-    }
-
-    /// Whether it plays the robot script.
-    #[must_use]
-    pub fn is_reference(&self) -> bool {
-        self.0 == Self::REFERENCE
-    }
-
-    /// Whether it is no robot.
-    #[must_use]
-    pub fn is_no_robot(&self) -> bool {
-        self.0 == Self::NO_ROBOT
-    }
-}
 
 impl RunId {
     /// The name of a run of a scenario; the longest one fits.

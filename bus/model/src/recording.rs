@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
 use crate::hash::{Digest, DigestWriter};
-use crate::ids::{AgentId, HumanId, NodeId, PlannerName, RunId};
+use crate::ids::{AgentId, HumanId, NodeId, RunId};
+use crate::planner_name::PlannerName;
 use crate::time::SimTime;
 
 /// State of one agent at one tick: exactly 64 bytes on every wire, little endian.

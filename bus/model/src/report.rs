@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use crate::clause::ClauseRole;
 use crate::fault::Fault;
 use crate::hash::Digest;
-use crate::ids::{PlannerName, RunId};
+use crate::ids::RunId;
 use crate::job::Stage;
+use crate::planner_name::PlannerName;
 
 /// Whether the scenario that was asked for happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]

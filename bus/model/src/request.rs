@@ -22,12 +22,12 @@ pub use author::{AuthorSpec, ServerKind};
 pub use tree::TextPlace;
 pub use values::{Duration, Moment, Seeds};
 
-use crate::drive::RobotModel;
 use crate::fault::FaultCode;
 use crate::form::{Form, PlaceWord, RobotStep};
 use crate::gesture::Gesture;
-use crate::ids::PlannerName;
 use crate::place::PlaceClass;
+use crate::planner_name::PlannerName;
+use crate::robot::RobotModel;
 use crate::rule::{RobotDo, RobotRule};
 
 /// A request as written in its TOML file. Unknown keys are refused.

@@ -33,6 +33,7 @@ macro_rules! roles {
 
 roles! {
     Behaviors "behaviors" "One behavior tree for each human.";
+    Commands "commands" "The commands that a driver outside gave in a run.";
     Exchange "exchange" "What passed between a stage and its author.";
     Location "location" "The location.";
     Metrics "metrics" "The metrics of a run as a table.";

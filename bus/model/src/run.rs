@@ -14,7 +14,8 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::ids::{BadId, PlannerName, RunId, ScenarioId};
+use crate::ids::{BadId, RunId, ScenarioId};
+use crate::planner_name::PlannerName;
 
 /// A planner with a simulation seed. Sorts the reference first, then by planner and seed.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -62,7 +63,7 @@ impl PartialOrd for Run {
 
 impl fmt::Display for Run {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}-{}", self.planner, self.seed)
+        write!(f, "{}-{}", self.planner.in_runs(), self.seed)
     }
 }
 
@@ -108,9 +109,21 @@ mod tests {
             assert_eq!(run.to_string(), format!("{planner}-{seed}"));
             assert_eq!(run.to_string().parse::<Run>().unwrap(), run);
         }
-        for text in
-            ["", "reference", "reference-", "-1", "reference-01", "reference-+1", "reference--1x", "a b-1", "a/b-1"]
-        {
+        let driven = Run { planner: "external:mine".parse().unwrap(), seed: 4 };
+        assert_eq!(driven.to_string(), "external.mine-4");
+        assert_eq!("external.mine-4".parse::<Run>().unwrap(), driven);
+        for text in [
+            "",
+            "external:mine-4",
+            "reference",
+            "reference-",
+            "-1",
+            "reference-01",
+            "reference-+1",
+            "reference--1x",
+            "a b-1",
+            "a/b-1",
+        ] {
             let bad = text.parse::<Run>().unwrap_err();
             assert!(bad.to_string().contains(&format!("`{text}` is not a run")), "{bad}");
         }

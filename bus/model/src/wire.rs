@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::{FailureClass, Fault};
 use crate::hash::Digest;
-use crate::ids::{PlannerName, ScenarioId};
+use crate::ids::ScenarioId;
 use crate::job::{Artifact, JobKey, JobSpec, Stage};
+use crate::planner_name::PlannerName;
 use crate::role::Role;
 use crate::standing::{JobState, ScenarioEnd};
 

@@ -10,7 +10,7 @@ mod page;
 mod read;
 
 pub(crate) use page::page;
-pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports, reports_in};
+pub(crate) use read::{changed, commands, is_bundle, manifest, read, read_some, reports, reports_in};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -155,7 +155,7 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>)
 /// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
 fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
     let Made { reading, proposal, paths, behaviors, runs } = collect::made(prepared, past)?;
-    let Some((_, (recording, report))) = runs.first() else { return Err(missing(Role::Report)) };
+    let Some((recording, report)) = runs.first().map(|run| &run.judged) else { return Err(missing(Role::Report)) };
     let verdict = report.verdict;
     let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
     let title = format!("{} · {}", proposal.title, prepared.location.name);
@@ -165,8 +165,8 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
     // Painting takes as long as everything else of a bundle, so it goes on beside it where a core is free.
     let (painting, painted) = if past.alone { (Some(std::thread::spawn(paint)), None) } else { (None, Some(paint())) };
     out.put(&layout::STORY, &"", story(&title, &proposal, report).as_bytes())?;
-    out.put(&layout::METRICS, &"", metrics(runs.iter().map(|(_, (_, report))| report)).as_bytes())?;
-    let recordings: Vec<&Recording> = runs.iter().map(|(_, (recording, _))| recording).collect();
+    out.put(&layout::METRICS, &"", metrics(runs.iter().map(|run| &run.judged.1)).as_bytes())?;
+    let recordings: Vec<&Recording> = runs.iter().map(|run| &run.judged.0).collect();
     out.put(&layout::AGENTS, &"", socrates_stream::csv::write_agents(&recordings).as_bytes())?;
     put_request(&mut out, prepared)?;
     out.put(&layout::READING, &"", pretty(&reading)?.as_bytes())?;
@@ -216,8 +216,11 @@ fn put_request(out: &mut Writer, prepared: &Prepared) -> Result<(), Complaint> {
 /// Writes every recording and report, and hands them back with their entries in the manifest.
 fn put_runs(out: &mut Writer, made: Vec<MadeRun>) -> Result<(Vec<Judged>, Vec<RunEntry>), Complaint> {
     let (mut runs, mut entries) = (Vec::new(), Vec::new());
-    for ((run, bytes), (recording, report)) in made {
+    for MadeRun { run, recording: bytes, commands, judged: (recording, report) } in made {
         out.put(&layout::RECORDINGS, &run, &bytes)?;
+        if let Some(commands) = commands {
+            out.put(&layout::COMMANDS, &run, &commands)?;
+        }
         entries.push(RunEntry {
             verdict: report.verdict,
             recording_hash: recording.hash(),

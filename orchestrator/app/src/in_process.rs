@@ -1,12 +1,14 @@
 //! One scenario from a request to its report, in this process: no bus, no other process, no file.
 
 use socrates_author::{Asking, AuthorContext, Question, Written};
+use socrates_model::driver::Commands;
 use socrates_model::job::Stage;
 use socrates_model::{
     Behaviors, Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request, Run, RunId,
 };
 use socrates_scoring::Evidence;
 use socrates_simulation::Onlooker;
+use socrates_simulation::driving::Outside;
 
 /// Asks per stage, as many as `run` allows.
 const ASKS: u32 = 4;
@@ -120,7 +122,8 @@ pub(crate) fn simulate(
     socrates_simulation::simulate(setup, &run.planner)
 }
 
-/// The same; `onlooker` gets everything as it comes, and nothing of it is kept.
+/// The same; `onlooker` gets everything as it comes, and nothing of it is kept. A driver that no catalog has is looked for
+/// `outside`.
 ///
 /// # Errors
 /// As [`simulate`].
@@ -129,11 +132,12 @@ pub(crate) fn simulate_into(
     made: Made,
     id: RunId,
     run: &Run,
+    outside: &mut dyn Outside,
     onlooker: &mut dyn Onlooker,
-) -> Result<(), Vec<Fault>> {
+) -> Result<Option<Commands>, Vec<Fault>> {
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
-    socrates_simulation::simulate_into(setup, &run.planner, onlooker)
+    socrates_simulation::simulate_into(setup, &run.planner, outside, onlooker)
 }
 
 /// All that the judge may look at in a run of the reference robot.

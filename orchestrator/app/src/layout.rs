@@ -14,6 +14,8 @@ pub enum When {
     EachHuman,
     /// One for each run: `reference-1`.
     EachRun,
+    /// One for each run of a driver outside: `external.mine-1`.
+    EachDrivenRun,
     /// One for each file of the location's folder.
     EachLocationFile,
 }
@@ -26,6 +28,7 @@ impl When {
             Self::Always => "always",
             Self::EachHuman => "for each human",
             Self::EachRun => "for each run",
+            Self::EachDrivenRun => "for each run of a driver outside",
             Self::EachLocationFile => "for each file of its folder",
         }
     }
@@ -132,12 +135,15 @@ pub const TREES: Sheet =
 /// Recordings.
 pub const RECORDINGS: Sheet =
     Sheet::new("details/recordings/*.mcap", "simulation", When::EachRun, "states and events of the run");
+/// Commands.
+pub const COMMANDS: Sheet =
+    Sheet::new("details/commands/*.json", "simulation", When::EachDrivenRun, "what the driver outside told the robot");
 /// Reports.
 pub const REPORTS: Sheet =
     Sheet::new("details/reports/*.json", "scoring", When::EachRun, "metrics, verdict and narrative of the run");
 
 /// Every file of a bundle.
-pub const LAYOUT: [Sheet; 18] = [
+pub const LAYOUT: [Sheet; 19] = [
     PAGE,
     PICTURE,
     DRAWING,
@@ -155,6 +161,7 @@ pub const LAYOUT: [Sheet; 18] = [
     BEHAVIORS,
     TREES,
     RECORDINGS,
+    COMMANDS,
     REPORTS,
 ];
 

@@ -36,7 +36,7 @@ pub(crate) async fn batch(
     let wishes: Vec<String> =
         prepared.iter().map(|one| format!("{} {}{chosen}", bundle::wish(one, options.seed), one.name)).collect();
     let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
-    let root = match place::place(&base, wish) {
+    let root = match place::place(&base, wish, prepared.iter().any(Prepared::is_driven)) {
         Place::Finished(root) => {
             talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
             return finish(talk, options, &root, refused);

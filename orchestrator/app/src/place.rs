@@ -24,15 +24,16 @@ pub(crate) enum Place {
     Finished(PathBuf),
 }
 
-/// The folder for this wish.
-pub(crate) fn place(base: &Path, wish: Digest) -> Place {
+/// The folder for this wish. Where it is made `anew`, one that is finished already is left alone: a driver outside may have
+/// changed since.
+pub(crate) fn place(base: &Path, wish: Digest, anew: bool) -> Place {
     for number in 1.. {
         let dir = if number == 1 { base.to_path_buf() } else { PathBuf::from(format!("{}-{number}", base.display())) };
         let made = bundle::manifest(&dir)
             .map(|manifest| manifest.wish)
             .or_else(|| library_index::read(&dir).map(|library| library.wish));
         if let Some(made) = made {
-            if made == wish {
+            if made == wish && !anew {
                 return Place::Finished(dir);
             }
             continue;
@@ -115,7 +116,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let base = folder.path().join("my-1");
         let (one, other) = (Digest::of(b"one"), Digest::of(b"other"));
-        let new = |wish: Digest| match place(&base, wish) {
+        let new = |wish: Digest| match place(&base, wish, false) {
             Place::New(dir) => dir.file_name().unwrap().to_string_lossy().into_owned(),
             Place::Finished(dir) => panic!("{} is not finished", dir.display()),
         };

@@ -56,6 +56,13 @@ pub(crate) struct Prepared {
     pub(crate) author_note: String,
 }
 
+impl Prepared {
+    /// Whether a driver outside drives in any of its runs.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.request.robot.planners.iter().any(|planner| planner.external().is_some())
+    }
+}
+
 /// Every request file named on the command line, folders opened.
 pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
     let mut files = Vec::new();
@@ -247,13 +254,22 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
     request.run.seeds.get_or_insert_with(|| Seeds::one(options.seed));
     if !options.planner.is_empty() {
         let known = socrates_planners::names();
-        if let Some(planner) = options.planner.iter().find(|planner| !known.contains(&planner.as_str())) {
+        if let Some(planner) =
+            options.planner.iter().find(|planner| planner.external().is_none() && !known.contains(&planner.as_str()))
+        {
             return Err(Complaint::input(
                 format!("J-PLANNER `--planner`: there is no planner `{planner}`"),
                 format!("planners: {}", known.join(", ")),
             ));
         }
         request.robot.planners.clone_from(&options.planner);
+    }
+    let is_driven = request.robot.planners.iter().any(|planner| planner.external().is_some());
+    if options.driver.is_some() && !is_driven {
+        return Err(Complaint::input(
+            "`--driver` starts a driver outside, and no planner is one",
+            "add --planner external:NAME with the name that the driver gives itself",
+        ));
     }
     if let Some(variants) = options.variants {
         request.run.variants = variants;

@@ -14,6 +14,7 @@ use socrates_draw::{FigureRow, TrackPage};
 use socrates_model::{MetricValue, PlannerName, Report, Run, ScenarioId};
 use socrates_scoring::Evidence;
 use socrates_scoring::metrics::{KEY_FIGURES, in_words, key_figures};
+use socrates_simulation::driving::{Again, Nobody, Outside};
 use socrates_stream::csv::RunChoice;
 
 use crate::bundle::{self, Bundle, RunEntry};
@@ -73,7 +74,13 @@ pub(crate) fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result
         Made { proposal: bundle.proposal.clone(), paths: bundle.paths.clone(), behaviors: bundle.behaviors.clone() };
     let mut scribe = Scribe::new(path, Some(&bundle.location));
     let scene = (&bundle.request, &bundle.location);
-    in_process::simulate_into(scene, made, run.id(&scenario), run, &mut scribe).map_err(|faults| {
+    // A driver outside need not be there again: what it told the robot is in the bundle.
+    let mut outside: Box<dyn Outside> = match run.planner.external() {
+        Some(_) => Box::new(Again::new(bundle::commands(&bundle.dir, run)?)),
+        None => Box::new(Nobody),
+    };
+    let played = in_process::simulate_into(scene, made, run.id(&scenario), run, outside.as_mut(), &mut scribe);
+    played.map_err(|faults| {
         Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
     })?;
     scribe.finish()

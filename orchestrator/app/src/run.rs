@@ -150,7 +150,7 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{}", prepared.name, options.seed)));
-    let dir = match place::place(&base, wish) {
+    let dir = match place::place(&base, wish, prepared.is_driven()) {
         Place::Finished(dir) => {
             talk.line(&format!("known      {} was made from this request; nothing to do", dir.display()));
             let bundle = bundle::read(&dir)?;

@@ -49,6 +49,8 @@ pub struct RunOptions {
     pub workers: Option<u32>,
     /// Faults put into the author's answers: `gdisc=0.3,bxml=0.1`.
     pub inject: String,
+    /// Command line of a driver outside that is started with the run and ended with it.
+    pub driver: Option<String>,
     /// Whether a person looks at what the authors made before it goes on.
     pub ask: bool,
 }
@@ -68,6 +70,7 @@ impl RunOptions {
             require: Require::Any,
             workers: None,
             inject: String::new(),
+            driver: None,
             ask: false,
         }
     }

@@ -114,7 +114,7 @@ impl Making<'_> {
         let specs = specs(wanted, config, options, &blobs)?;
         let workers =
             options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
-        let mut supervisor = Supervisor::start(work, config, workers).await?;
+        let mut supervisor = Supervisor::start(work, config, workers, options.driver.as_deref()).await?;
         let mut asking = match wanted.first().filter(|want| want.prepared.looked_at) {
             Some(want) => {
                 Some(Asking::start(talk, config, supervisor.bus.clone(), work, blobs.clone(), want.prepared)?)

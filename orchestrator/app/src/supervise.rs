@@ -4,6 +4,7 @@
 //! the supervisor leaves nothing running; a child that dies is started again, unless it says that this would not help.
 
 use std::collections::VecDeque;
+use std::os::fd::AsFd as _;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::Arc;
@@ -88,11 +89,20 @@ struct Role {
     program: PathBuf,
     /// Whether the environment says nothing of [`ARENAS`].
     few_arenas: bool,
+    /// Whether it is a program of the user's, which prints what it likes: its words go where ours go that are no results.
+    foreign: bool,
+    /// Variables of its environment.
+    variables: Vec<(&'static str, String)>,
 }
 
 impl Supervisor {
     /// Binds the listener, then starts the children and waits until the orchestrator answers.
-    pub(crate) async fn start(work: &Path, config: &Config, simulations: u32) -> Result<Self, Complaint> {
+    pub(crate) async fn start(
+        work: &Path,
+        config: &Config,
+        simulations: u32,
+        driven_by: Option<&str>,
+    ) -> Result<Self, Complaint> {
         let namespace = "run";
         if let Some((before, _)) = read_endpoint(work)
             && let Some(socket) = before.strip_prefix(SOCKET)
@@ -114,6 +124,9 @@ impl Supervisor {
         for role in roles(work, &endpoint, namespace, simulations, config)? {
             let crew = if role.first.is_empty() { &mut workers } else { &mut orchestrator };
             crew.add(role, report.clone(), restarts)?;
+        }
+        if let Some(line) = driven_by {
+            workers.add(driver(line, &endpoint, namespace)?, report.clone(), restarts)?;
         }
         let work = work.to_path_buf();
         let mut supervisor = Self { bus, work, _socket: socket, workers, orchestrator, gave_up };
@@ -188,7 +201,8 @@ fn roles(
         let mut args = own;
         args.extend_from_slice(config.passed_on());
         args.extend(["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned));
-        roles.push(Role { name, args, first, program: program.to_path_buf(), few_arenas });
+        let program = program.to_path_buf();
+        roles.push(Role { name, args, first, program, few_arenas, foreign: false, variables: Vec::new() });
     };
     role(
         "orchestrator".to_owned(),
@@ -230,17 +244,42 @@ fn spawn(role: &Role, more: &[String]) -> Result<Child, Complaint> {
     if role.few_arenas {
         command.env(ARENAS.0, ARENAS.1);
     }
+    let said = if role.foreign { to_stderr()? } else { Stdio::piped() };
     command
         .args(&role.args)
         .args(more)
+        .envs(role.variables.iter().map(|(name, value)| (name, value)))
         .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
+        .stdout(said)
         .stderr(Stdio::inherit())
         .kill_on_drop(true)
         // Ctrl-C reaches the supervisor alone, which then asks the children to leave.
         .process_group(0)
         .spawn()
         .map_err(|why| ours(&format!("the {} process cannot be started: {why}", role.name)))
+}
+
+/// Where a program of the user's prints: beside our own words, so that results stay alone on standard output.
+fn to_stderr() -> Result<Stdio, Complaint> {
+    let copy = std::io::stderr().as_fd().try_clone_to_owned();
+    copy.map(Stdio::from).map_err(|why| ours(&format!("standard error cannot be shared: {why}")))
+}
+
+/// The driver that a run was asked to start.
+fn driver(line: &str, endpoint: &str, namespace: &str) -> Result<Role, Complaint> {
+    let mut words = shlex::split(line).unwrap_or_default().into_iter();
+    let Some(program) = words.next() else {
+        let hint = "write --driver \"python3 my_planner.py\", for example; quotation marks come in pairs";
+        return Err(Complaint::input(format!("`--driver {line}` is no command"), hint));
+    };
+    let variables = vec![
+        ("SOCRATES_ENDPOINT", endpoint.to_owned()),
+        ("SOCRATES_NAMESPACE", namespace.to_owned()),
+        ("SOCRATES_TIED", "1".to_owned()),
+    ];
+    let (args, first) = (words.collect(), Vec::new());
+    let name = "driver".to_owned();
+    Ok(Role { name, args, first, program: PathBuf::from(program), few_arenas: false, foreign: true, variables })
 }
 
 /// What a child said last: why it ended.

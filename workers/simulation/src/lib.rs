@@ -5,11 +5,12 @@
 //!                                          └─► recording ─► MCAP + summary
 //! ```
 //!
-//! Modules in reading order: the pure run ([`simulate()`]), what is said about it ([`summary`]), how
+//! Modules in reading order: the pure run ([`simulate()`]), robots that are driven from outside ([`driving`]), what is said about it ([`summary`]), how
 //! fast it plays for viewers ([`pace`]), and the worker's stage (`stage`, feature `mcap`).
 //!
 //! *Never here:* another stage, the orchestrator, the store, a metric, a verdict.
 
+pub mod driving;
 pub mod pace;
 pub mod simulate;
 #[cfg(feature = "mcap")]

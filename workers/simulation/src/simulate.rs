@@ -2,11 +2,15 @@
 
 use socrates_engine::{Engine, Keeper, Onlooker, Setup};
 use socrates_maps::openings::Enclosures;
+use socrates_model::driver::Commands;
 use socrates_model::request::Waypoints;
 use socrates_model::{
-    Behaviors, Fault, FaultCode, Location, NodeId, Paths, PlannerName, Point, Proposal, Recording, Request, RunId,
+    Behaviors, Fault, FaultCode, HumanId, Location, NodeId, Paths, PlannerName, Point, Proposal, Recording, Request,
+    RunId,
 };
 use socrates_planners::{Mission, make};
+
+use crate::driving::{Ended, Ending, Kept, Nobody, Outside, Wanted};
 
 /// The setup of a run from its artifacts. Without a request the robot is the default one and the run ends by itself.
 #[must_use]
@@ -42,23 +46,29 @@ pub fn setup(
     }
 }
 
-/// Runs a setup with a planner.
+/// Runs a setup with a planner of the catalog.
 ///
 /// # Errors
 /// `J-PLANNER` with the list of planners; what [`Engine::new`] finds.
 pub fn simulate(setup: Setup, planner: &PlannerName) -> Result<Recording, Vec<Fault>> {
     let mut keeper = Keeper::default();
-    simulate_into(setup, planner, &mut keeper)?;
+    simulate_into(setup, planner, &mut Nobody, &mut keeper)?;
     let nothing = || vec![Fault::new(FaultCode::JPanic, "the engine", "it ended before the first tick")];
     keeper.recording().ok_or_else(nothing)
 }
 
-/// The same; `onlooker` gets everything as it comes, and nothing of it is kept.
+/// The same; `onlooker` gets everything as it comes, and nothing of it is kept. A planner that no catalog has is looked for
+/// `outside`; its commands are given back.
 ///
 /// # Errors
-/// As [`simulate`].
-pub fn simulate_into(mut setup: Setup, planner: &PlannerName, onlooker: &mut dyn Onlooker) -> Result<(), Vec<Fault>> {
-    if !socrates_planners::names().contains(&planner.as_str()) {
+/// As [`simulate`]; `J-DRIVER` when the driver outside did not drive.
+pub fn simulate_into(
+    mut setup: Setup,
+    planner: &PlannerName,
+    outside: &mut dyn Outside,
+    onlooker: &mut dyn Onlooker,
+) -> Result<Option<Commands>, Vec<Fault>> {
+    if planner.external().is_none() && !socrates_planners::names().contains(&planner.as_str()) {
         return Err(vec![socrates_planners::catalog::unknown(planner.as_str())]);
     }
     setup.planner = planner.clone();
@@ -71,15 +81,29 @@ pub fn simulate_into(mut setup: Setup, planner: &PlannerName, onlooker: &mut dyn
     // The script's `at_encounter` means the first of somebody who meets the robot several times.
     let encounters =
         setup.paths.encounters.iter().rev().filter_map(|meet| Some((meet.human, place(&meet.node)?))).collect();
+    let people: Vec<HumanId> = setup.proposal.humans.iter().map(|human| human.id).collect();
+    let (run, seed) = (setup.run.clone(), setup.seed);
     let engine = Engine::new(setup)?;
     let field = engine.floor().field().clone();
     let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, encounters };
-    let mut driver = make(planner.as_str(), &mission).map_err(|fault| vec![fault])?;
-    match driver.as_mut() {
-        Some(driver) => engine.play(Some(driver.as_mut()), onlooker),
-        None => engine.play(None, onlooker),
+    let Some(driver) = planner.external() else {
+        let mut driver = make(planner.as_str(), &mission).map_err(|fault| vec![fault])?;
+        match driver.as_mut() {
+            Some(driver) => engine.play(Some(driver.as_mut()), onlooker),
+            None => engine.play(None, onlooker),
+        }
+        return Ok(None);
+    };
+    let wanted = Wanted { driver, run: &run, seed, people: &people, mission: &mission };
+    let driver = outside.begin(&wanted).map_err(|fault| vec![fault])?;
+    let mut kept = Kept { driver, commands: Vec::new() };
+    let mut ending = Ending { onlooker, ended: Ended::default() };
+    engine.play(Some(&mut kept), &mut ending);
+    kept.driver.over(&ending.ended);
+    match kept.driver.fault() {
+        Some(fault) => Err(vec![fault]),
+        None => Ok(Some(kept.commands())),
     }
-    Ok(())
 }
 
 /// The points that the planner is given.

@@ -13,6 +13,7 @@ use socrates_stream::mcap::{Tape, Writer};
 use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, StreamError};
 use tokio::runtime::Handle;
 
+use crate::driving::{Drive, Mode, OverBus};
 use crate::pace::Pace;
 use crate::simulate::{setup, simulate_into};
 use crate::summary::Summary;
@@ -23,7 +24,7 @@ const LINGER: Duration = Duration::from_secs(3);
 const LINGERING: usize = 4;
 
 /// The simulation stage. Settings: `pace` (`max` or simulated seconds per second), `live` (`off`, `bus`,
-/// `shm`, `on` for both; default `off`).
+/// `shm`, `on` for both; default `off`), `drive` and `drive_patience_s` of drivers outside (see [`Drive::read`]).
 #[derive(Debug, Clone)]
 pub struct Simulation {
     /// For readers on this machine.
@@ -178,12 +179,20 @@ impl Stage for Simulation {
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
         let Inputs { setup, planner, location } = inputs(job)?;
         let run = setup.run.clone();
+        let drive = Drive::read(job.setting("drive"), job.setting("drive_patience_s"))?;
         let mut viewers = viewers(job, &run, location, self).await?;
+        if drive.mode == Mode::Free && planner.external().is_some() && viewers.pace == Pace::Max {
+            viewers.pace = Pace::Times(1.0);
+        }
+        let mut outside = OverBus::new(job.live_bus(), Handle::current(), drive, job.cancel().clone());
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
-            simulate_into(setup, &planner, &mut viewers)?;
+            let commands = simulate_into(setup, &planner, &mut outside, &mut viewers)?;
             let Viewers { scribe, mut sinks, .. } = viewers;
-            let done = scribe.outputs(&named)?;
+            let mut done = scribe.outputs(&named)?;
+            if let Some(commands) = commands {
+                done.artifacts.push(Output::json(Role::Commands, &commands)?);
+            }
             // The recording is whole before the run is over for its viewers: what they ask for from now on is in it.
             sinks.end();
             Ok(done)

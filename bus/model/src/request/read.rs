@@ -19,9 +19,9 @@ use super::{
     AuthorSpec, BadRequest, Breadth, Duration, Expect, GROUP_SIZES, MAX_HUMANS, MAX_TEXT_CHARS, MAX_VARIANTS, Moment,
     Request, RobotGesture, RobotRequest, RunRequest, Seeds,
 };
-use crate::drive::RobotModel;
 use crate::fault::FaultCode;
-use crate::ids::PlannerName;
+use crate::planner_name::PlannerName;
+use crate::robot::RobotModel;
 
 /// Keys of a request.
 const KEYS: [&str; 15] = [
@@ -295,7 +295,7 @@ impl Door<'_> {
         for node in nodes {
             let hint = self.planners.map_or_else(|| "the name of a planner".to_owned(), |known| known.join(", "));
             let Some(planner) = self.typed::<PlannerName>(KEY, node, &hint) else { continue };
-            if self.planners.is_some_and(|known| !known.contains(&planner.as_str())) {
+            if self.planners.is_some_and(|known| planner.external().is_none() && !known.contains(&planner.as_str())) {
                 let (found, hint) = (format!("there is no planner `{planner}`"), format!("planners: {hint}"));
                 self.problems.push(BadRequest {
                     code: FaultCode::JPlanner,

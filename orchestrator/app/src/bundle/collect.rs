@@ -12,8 +12,15 @@ use crate::prepare::Prepared;
 
 /// A run with what was found of it.
 pub(super) type Judged = (Recording, Report);
-/// A run, its recording as it is stored, and what both hold.
-pub(super) type MadeRun = ((Run, Vec<u8>), Judged);
+/// A run as it was made.
+pub(super) struct MadeRun {
+    pub(super) run: Run,
+    /// Its recording as it is stored.
+    pub(super) recording: Vec<u8>,
+    /// The commands of a driver outside as they are stored, where one drove.
+    pub(super) commands: Option<Vec<u8>>,
+    pub(super) judged: Judged,
+}
 
 /// What was made.
 pub(super) struct Made {
@@ -68,7 +75,9 @@ fn runs(status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Vec<MadeRun>, Comp
         let bytes = fetch(&recorded.digest)?;
         let recording =
             socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
-        runs.push(((run.clone(), bytes), (recording, report)));
+        let commands = output(simulation, Role::Commands).map(|artifact| string(artifact, fetch)).transpose()?;
+        let commands = commands.map(String::into_bytes);
+        runs.push(MadeRun { run: run.clone(), recording: bytes, commands, judged: (recording, report) });
     }
     Ok(runs)
 }

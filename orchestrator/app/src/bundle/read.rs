@@ -4,7 +4,8 @@ use std::fmt::Display;
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
-use socrates_model::{Digest, Fault, Location, Report, Request, ScenarioId};
+use socrates_model::driver::Commands;
+use socrates_model::{Digest, Fault, Location, Report, Request, Run, ScenarioId};
 
 use super::{Bundle, Manifest, RunEntry};
 use crate::exit::Complaint;
@@ -103,6 +104,11 @@ fn request(dir: &Path) -> Result<Request, Complaint> {
         complaint.causes = problems.iter().map(|bad| bad.told(layout::REQUEST.path)).collect();
         complaint
     })
+}
+
+/// The commands of a driver outside in a run of a bundle.
+pub(crate) fn commands(dir: &Path, run: &Run) -> Result<Commands, Complaint> {
+    part(dir, &layout::COMMANDS, run)
 }
 
 fn report(dir: &Path, entry: &RunEntry) -> Result<Report, Complaint> {

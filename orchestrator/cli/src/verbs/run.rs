@@ -76,6 +76,10 @@ pub(crate) struct Options {
     /// a probability per ask.
     #[arg(long, value_name = "KIND=RATE,…", default_value = "")]
     inject: String,
+    /// Start this command with the run: a driver for `--planner external:NAME`. It finds the bus by SOCRATES_ENDPOINT and
+    /// SOCRATES_NAMESPACE, and leaves when its standard input closes.
+    #[arg(long, value_name = "COMMAND")]
+    driver: Option<String>,
     /// Look at the proposal, then at paths and behaviors, before they go on: accept, change in words, edit, have made again.
     #[arg(long)]
     ask: bool,
@@ -87,12 +91,12 @@ impl Options {
     }
 
     fn values(&self) -> RunOptions {
-        let Self { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, ask } =
+        let Self { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, driver, ask } =
             self.clone();
         let require = match require {
             Require::Any => run_options::Require::Any,
             Require::Realised => run_options::Require::Realised,
         };
-        RunOptions { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, ask }
+        RunOptions { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, driver, ask }
     }
 }

@@ -70,7 +70,7 @@ pub(crate) fn block(human: &mut Human, scene: &Scene<'_>) -> Want {
         return Want::stand_facing(robot.at());
     }
     // Far ahead it waits in the line instead of running against the robot.
-    let target = if ahead > 1.6 && aside.abs() > 0.12 && robot.v > 0.1 && ahead < 4.0 {
+    let target = if ahead > 1.6 && aside.abs() > 0.12 && robot.speed_mps() > 0.1 && ahead < 4.0 {
         robot.at() + intent * (ahead.min(2.0) + behind_m) + left * beside_m
     } else {
         spot

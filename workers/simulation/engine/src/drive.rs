@@ -59,6 +59,8 @@ impl Engine {
             let discs: Vec<Disc> = self.humans.iter().filter(|human| human.present()).map(disc).collect();
             let (floor, pose, range) = (&self.floor, robot.pose, robot.model.lidar_range_m);
             let scan = || lidar::scan(floor, &pose, &discs, range);
+            let humans = &self.humans;
+            let everybody = || humans.iter().filter(|human| human.present()).map(self::seen).collect();
             // Whoever goes in where the robot does goes before it.
             let awaited = self.humans.iter().zip(&self.timings);
             let awaited =
@@ -68,8 +70,10 @@ impl Engine {
                 time: now,
                 pose,
                 v: robot.v,
+                vy: robot.vy,
                 omega: robot.omega,
                 people: &seen,
+                everybody: &everybody,
                 doors: &doors,
                 lidar: &scan,
                 cues: Cues { leavers_inside: u32::try_from(leavers).unwrap_or(u32::MAX) },

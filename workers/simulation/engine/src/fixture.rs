@@ -176,6 +176,6 @@ impl RobotDriver for Liner {
         });
         let left = self.way.length_m() - self.s;
         let v = if blocked || left < 0.1 { 0.0 } else { 0.8 * (1.0 - turn.abs()).max(0.0) };
-        Command { v, omega: 2.0 * turn, gesture: None, waiting: blocked }
+        Command { v, omega: 2.0 * turn, waiting: blocked, ..Command::default() }
     }
 }

@@ -143,7 +143,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let fastest =
         if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     // A robot that stands before the meeting is there later than its pace says: it has to get going first.
-    let stands_s = if robot.v < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
+    let stands_s = if robot.speed_mps() < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
     let due_s = robot.eta_s(meeting.robot_s) + stands_s - meeting.lead_s;
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
@@ -170,7 +170,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     if human.relation == Relation::Behind && is_first && meeting.lead_s <= 0.0 {
         // Catches up without treading on its heels.
         let behind = robot.s - (human.s + meeting.robot_s - meeting.human_s);
-        speed = speed.min((robot.v.max(0.0) + 0.6 * (behind - 1.2)).max(0.0));
+        speed = speed.min((robot.speed_mps().max(0.0) + 0.6 * (behind - 1.2)).max(0.0));
     }
     Pace { speed_mps: speed }
 }
@@ -182,7 +182,9 @@ const SAME_PLACE_M: f64 = 0.5;
 
 /// The meetings at which somebody holds the robot up, by where they lie along its way, m, with who does; none while it drives.
 pub(crate) fn holders(humans: &[Human], robot: Option<&Robot>) -> Vec<(HumanId, f64)> {
-    let Some(robot) = robot.filter(|robot| robot.has_moved && robot.v < STANDS_MPS && robot.arrived_s.is_none()) else {
+    let Some(robot) =
+        robot.filter(|robot| robot.has_moved && robot.speed_mps() < STANDS_MPS && robot.arrived_s.is_none())
+    else {
         return Vec::new();
     };
     // Standing by a rule of theirs: whoever comes up to it, walks on, or stands where they always do keeps nobody away.
@@ -243,7 +245,7 @@ pub(crate) fn lead_by_ways_s(human: &Vector, robot: &Vector) -> f64 {
 fn faces(human: &Human, robot: &Robot) -> bool {
     let way = robot.at() - human.at;
     let toward = human.travel().dot(&way) > SAME_COS * way.norm();
-    robot.v < FACES_SHARE * robot.model.v_max_mps && toward && human.travel().dot(&robot.intent()) < -SAME_COS
+    robot.speed_mps() < FACES_SHARE * robot.model.v_max_mps && toward && human.travel().dot(&robot.intent()) < -SAME_COS
 }
 
 /// People who leave the place that the robot enters: after the door has opened, one after the other.
@@ -311,9 +313,9 @@ pub(crate) fn let_out(humans: &mut [Human], robot_doors: &[DoorOnWay]) {
 /// Speed of somebody who keeps level with the robot.
 fn beside(human: &Human, robot: &Robot) -> f64 {
     let (s, _) = human.route.project_within(&robot.at(), human.s - 4.0, human.s + 4.0);
-    let lead_m = if robot.v < STANDS_MPS { MAKES_WAY_M } else { 0.0 };
+    let lead_m = if robot.speed_mps() < STANDS_MPS { MAKES_WAY_M } else { 0.0 };
     let ahead = s + lead_m - human.s;
-    (robot.v.max(0.0) + 0.9 * ahead).clamp(0.0, FASTEST_MPS)
+    (robot.speed_mps().max(0.0) + 0.9 * ahead).clamp(0.0, FASTEST_MPS)
 }
 
 /// The controller's memory at the start: who leaves a place that the robot enters, and in which order.

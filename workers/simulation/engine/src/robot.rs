@@ -5,8 +5,6 @@ use socrates_model::{AgentId, Command, Gesture, NodeId, Point, Polyline, Pose, R
 
 use crate::view::MOVING_MPS;
 
-/// Largest change of turning rate, rad/s².
-const ALPHA_MAX: f64 = 4.0;
 /// How long a gesture is held, s.
 const GESTURE_S: f64 = 2.0;
 /// Farther from its intended way than this the robot goes another way, m; nearer than this to any later part of it, m, it is back.
@@ -20,7 +18,10 @@ const PACE_S: f64 = 3.0;
 pub(crate) struct Robot {
     pub(crate) model: RobotModel,
     pub(crate) pose: Pose,
+    /// Forward, m/s.
     pub(crate) v: f64,
+    /// To the left, m/s.
+    pub(crate) vy: f64,
     pub(crate) omega: f64,
     pub(crate) velocity: Vector,
     /// Whether it ever moved.
@@ -64,7 +65,13 @@ impl Robot {
     pub(crate) fn intent(&self) -> Vector {
         let (s, aside) = self.route.project_within(&self.at(), self.s - 0.5, self.s + 2.0);
         let way = self.route.direction(s + 0.6);
-        if aside < 2.0 && way.norm() > 0.5 && self.arrived_s.is_none() { way } else { self.heading() }
+        if aside < 2.0 && way.norm() > 0.5 && self.arrived_s.is_none() {
+            way
+        } else if self.model.is_omnidirectional() && self.velocity.norm() > MOVING_MPS {
+            self.velocity.normalize()
+        } else {
+            self.heading()
+        }
     }
 
     /// Whether it is still on its way past the length `s`.
@@ -77,19 +84,46 @@ impl Robot {
         (s - self.s).max(0.0) / self.pace_mps.max(0.1)
     }
 
+    /// How fast it gets on, m/s: forward speed, of an omnidirectional base speed in whatever direction.
+    pub(crate) fn speed_mps(&self) -> f64 {
+        if self.model.is_omnidirectional() { self.velocity.norm() } else { self.v }
+    }
+
     /// One tick under the present command.
     pub(crate) fn step(&mut self) {
         let limit = self.model.a_max_mps2 * STEP_SECS;
-        let wish = finite(self.command.v).clamp(-0.25 * self.model.v_max_mps, self.model.v_max_mps);
-        // Braking may be twice as hard as starting: every base brakes harder than it starts.
-        let brake = if wish.abs() < self.v.abs() { 2.0 * limit } else { limit };
-        self.v += (wish - self.v).clamp(-brake, brake);
+        let wish = finite(self.command.v).clamp(self.model.v_min_mps, self.model.v_max_mps);
+        if self.model.is_omnidirectional() {
+            self.step_sideways(wish, limit);
+        } else {
+            // Braking may be twice as hard as starting: every base brakes harder than it starts.
+            let brake = if wish.abs() < self.v.abs() { 2.0 * limit } else { limit };
+            self.v += (wish - self.v).clamp(-brake, brake);
+        }
         let turn = finite(self.command.omega).clamp(-self.model.omega_max_radps, self.model.omega_max_radps);
-        self.omega += (turn - self.omega).clamp(-ALPHA_MAX * STEP_SECS, ALPHA_MAX * STEP_SECS);
+        let swing = self.model.alpha_max_radps2 * STEP_SECS;
+        self.omega += (turn - self.omega).clamp(-swing, swing);
         self.pose.yaw = socrates_model::geometry::wrap_angle(self.pose.yaw + self.omega * STEP_SECS);
-        self.velocity = self.heading() * self.v;
+        let heading = self.heading();
+        self.velocity = heading * self.v;
+        if self.model.is_omnidirectional() {
+            self.velocity += Vector::new(-heading.y, heading.x) * self.vy;
+        }
         self.pose.x += self.velocity.x * STEP_SECS;
         self.pose.y += self.velocity.y * STEP_SECS;
+    }
+
+    /// Speeds of an omnidirectional base: the command is held to the largest speed in any direction, its change to the limit.
+    fn step_sideways(&mut self, wish: f64, limit: f64) {
+        let side = finite(self.command.vy).clamp(-self.model.vy_max_mps, self.model.vy_max_mps);
+        let wish = Vector::new(wish, side);
+        let fastest = self.model.v_max_mps.max(self.model.vy_max_mps);
+        let wish = if wish.norm() > fastest { wish * (fastest / wish.norm()) } else { wish };
+        let now = Vector::new(self.v, self.vy);
+        let change = wish - now;
+        let most = if wish.norm() < now.norm() { 2.0 * limit } else { limit };
+        let next = if change.norm() > most { now + change * (most / change.norm()) } else { wish };
+        (self.v, self.vy) = (next.x, next.y);
     }
 
     /// Takes over what contacts left of position and speed, and counts the progress.
@@ -98,7 +132,11 @@ impl Robot {
         self.pose.y = at.y;
         if (velocity - self.velocity).norm() > 1e-9 {
             self.velocity = velocity;
-            self.v = velocity.dot(&self.heading());
+            let heading = self.heading();
+            self.v = velocity.dot(&heading);
+            if self.model.is_omnidirectional() {
+                self.vy = velocity.dot(&Vector::new(-heading.y, heading.x));
+            }
         }
         let moves = self.velocity.norm() > MOVING_MPS;
         self.has_moved |= moves;
@@ -112,7 +150,7 @@ impl Robot {
             let (s, aside) = self.route.project_within(&at, self.s, self.route.length_m());
             self.s = if aside < BACK_ON_WAY_M { s } else { self.s };
         }
-        if self.v > 0.15 {
+        if self.speed_mps() > 0.15 {
             let share = STEP_SECS / PACE_S;
             self.pace_mps += share * (((self.s - before) / STEP_SECS).clamp(0.3, self.model.v_max_mps) - self.pace_mps);
         }

@@ -148,6 +148,11 @@ impl Engine {
             self.think(now, tick == 0, &mut recorder);
             if let Some(driver) = driver.as_deref_mut() {
                 self.drive(driver, now, &mut recorder);
+                if driver.is_gone() {
+                    recorder.tell(EventKind::End { reason: "driver".to_owned() });
+                    recorder.frame(&self.states(tick), onlooker);
+                    return;
+                }
             }
             let states = self.states(tick);
             let met = self.watch(&mut recorder);

@@ -83,6 +83,7 @@ pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
         model: setup.robot,
         pose: Pose::new(at.x, at.y, yaw),
         v: 0.0,
+        vy: 0.0,
         omega: 0.0,
         velocity: Vector::zeros(),
         has_moved: false,

@@ -16,6 +16,12 @@ const ROOM_M: f64 = 0.03;
 /// A point too near to a wall is taken to a place at most so far away, m.
 const BESIDE_M: f64 = 0.5;
 
+/// The shortest free way through the waypoints of a mission, as far as one leads; shut doors and people are not looked at.
+#[must_use]
+pub fn free_way(mission: &Mission) -> Vec<Point> {
+    Ground::new(mission).through(&mission.waypoints).0.points().to_vec()
+}
+
 /// Walls of the mission.
 #[derive(Debug, Clone)]
 pub(crate) struct Ground {

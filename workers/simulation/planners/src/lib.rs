@@ -29,4 +29,5 @@ mod waiting;
 mod tests;
 
 pub use catalog::{CATALOG, PlannerSheet, make, names};
+pub use ground::free_way;
 pub use mission::Mission;

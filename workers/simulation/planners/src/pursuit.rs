@@ -33,7 +33,7 @@ pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, 
     // Comes to rest at the end of the way.
     let v = (speed * straight).min(libm::sqrt(2.0 * 0.7 * robot.a_max_mps2 * (left - 0.05).max(0.0)));
     let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
-    Command { v, omega: if left < 0.08 { 0.0 } else { omega }, gesture: None, waiting: false }
+    Command { v, omega: if left < 0.08 { 0.0 } else { omega }, ..Command::default() }
 }
 
 /// How far the end of a way is, m; before the turn of one there and back, so much as is left of it.
@@ -66,7 +66,7 @@ pub(crate) fn pursue(
     let front_m = ground.front_m(&seen.pose, margin_m, FRONT_M);
     let v = (speed * straight).min(NEAR_PER_S * ahead).min(stops(left_m)).min(stops(front_m));
     let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
-    Command { v, omega, gesture: None, waiting: false }
+    Command { v, omega, ..Command::default() }
 }
 
 /// Stands and turns to a point: by so much a radian off it, rad/s, and at most this fast, rad/s.
@@ -74,7 +74,7 @@ pub(crate) fn face(seen: &Observation<'_>, to: &Point, gain: f64, most_radps: f6
     let way = to - seen.pose.point();
     let turn = wrap_angle(libm::atan2(way.y, way.x) - seen.pose.yaw);
     let omega = if turn.abs() > 0.1 { (gain * turn).clamp(-most_radps, most_radps) } else { 0.0 };
-    Command { v: 0.0, omega, gesture: None, waiting: false }
+    Command { omega, ..Command::default() }
 }
 
 /// The largest share of full speed (1, ¾, ½, ¼, 0) at which nobody is nearer than allowed along the way.

@@ -71,8 +71,18 @@ fn drive_through(
         let seen = people(now, &pose);
         let lidar = || vec![12.0; 360];
         let time = SimTime::from_nanos((now * 1e9).round() as u64);
-        let observation =
-            Observation { time, pose, v, omega: 0.0, people: &seen, doors, lidar: &lidar, cues: Cues::default() };
+        let observation = Observation {
+            time,
+            pose,
+            v,
+            vy: 0.0,
+            omega: 0.0,
+            people: &seen,
+            everybody: &Vec::new,
+            doors,
+            lidar: &lidar,
+            cues: Cues::default(),
+        };
         let command = driver.drive(&observation);
         v += (command.v - v).clamp(-2.0 * dt, dt);
         pose.yaw += command.omega * dt;

@@ -1,0 +1,61 @@
+//! The mission as it is told to a driver.
+
+use socrates_model::driver::{MissionDoor, MissionMap, MissionMessage};
+use socrates_model::lockstep::VERSION;
+use socrates_model::robot::RobotFile;
+use socrates_model::{Cell, Digest, Grid, PlannerName, Point};
+use socrates_planners::Mission;
+
+use super::{Mode, Wanted, fault};
+
+/// A point as it is told.
+fn at(point: &Point) -> [f64; 2] {
+    [point.x, point.y]
+}
+
+/// Cells of a map as they are told, row by row from the lower left: 0 free, 100 occupied, 255 unknown.
+pub(crate) fn cells(grid: &Grid) -> Vec<u8> {
+    let told = |cell: &Cell| match cell {
+        Cell::Free => 0,
+        Cell::Occupied => 100,
+        Cell::Unknown => 255,
+    };
+    // The grid has its upper row first.
+    grid.cells.chunks(grid.width.max(1)).rev().flatten().map(told).collect()
+}
+
+/// The message for this run.
+///
+/// # Errors
+/// `J-DRIVER` for a name that no driver can have.
+pub fn message(wanted: &Wanted<'_>, session: u64, mode: Mode) -> Result<MissionMessage, socrates_model::Fault> {
+    let Mission { robot, grid, doors, waypoints, .. } = wanted.mission;
+    let planner = PlannerName::new(format!("external:{}", wanted.driver));
+    let points = |points: &[Point]| points.iter().map(at).collect::<Vec<_>>();
+    Ok(MissionMessage {
+        socrates: "mission".to_owned(),
+        version: VERSION,
+        session,
+        run: wanted.run.clone(),
+        planner: planner.map_err(|bad| fault(wanted.driver, bad.to_string()))?,
+        seed: wanted.seed,
+        mode: mode.word().to_owned(),
+        robot: RobotFile::from(robot),
+        goal: waypoints.last().map(at).unwrap_or_default(),
+        waypoints: points(waypoints),
+        plan: points(&socrates_planners::free_way(wanted.mission)),
+        doors: doors
+            .iter()
+            .map(|door| MissionDoor { id: door.id.clone(), from: at(&door.from), to: at(&door.to) })
+            .collect(),
+        people: wanted.people.to_vec(),
+        map: MissionMap {
+            width: grid.width,
+            height: grid.height,
+            resolution_m: grid.resolution_m,
+            origin: [grid.origin.x, grid.origin.y],
+            yaw: grid.origin.yaw,
+            digest: Digest::of(&cells(grid)),
+        },
+    })
+}
