@@ -8,6 +8,7 @@
 //! | `ev/<batch>/<scenario>` | put, [`crate::Qos::Hint`] | numbered notices for viewers |
 //! | `live/orch/<id>`, `live/worker/<stage>/<instance>` | presence tokens | hastening |
 //! | `live/<run>/{meta,agents,ctl}` | put and query | live state of a run |
+//! | `serve/run` | query, served by `socrates serve` | the next run of a driver |
 //! | `drive/<name>/{mission,step}` | query, served by the driver of this name | a robot that is driven from outside |
 //! | `drive/<name>/claim/<id>` | presence token | the driver is there, and alone |
 
@@ -36,6 +37,9 @@ pub const STATUS: &str = "rpc/status";
 pub const BLOB_GET: &str = "rpc/blob_get";
 /// A part of an artifact is stored: `wire::BlobPut` → `u64`, bytes held so far.
 pub const BLOB_PUT: &str = "rpc/blob_put";
+
+/// Somebody who drives asks `socrates serve` for a run: JSON, see `docs/wire.md`.
+pub const SERVE_RUN: &str = "serve/run";
 
 /// Every query key of the orchestrator, in the order in which they are declared.
 pub const RPC: [&str; 10] = [HELLO, ACQUIRE, BEAT, REPORT, RELEASE, SUBMIT, CONTROL, STATUS, BLOB_GET, BLOB_PUT];

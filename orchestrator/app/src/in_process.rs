@@ -89,6 +89,27 @@ pub(crate) async fn foresee(
     Ok((proposal, paths))
 }
 
+/// A scenario of this base seed as the offline author writes it: asked with the seeds that its jobs would get.
+///
+/// # Errors
+/// The faults of the last answer that was refused.
+pub(crate) async fn author(
+    request: &Request,
+    reading: &Reading,
+    location: &Location,
+    base_seed: u64,
+) -> Result<Made, Vec<Fault>> {
+    let (proposal, paths) = foresee(request, reading, location, base_seed).await?;
+    let stage = Stage::Behaviors;
+    let seed = socrates_orchestrator::pipeline::authored_seed(base_seed, stage, 0, 0);
+    let first = Question::first(request.clone(), reading.clone(), location.clone(), seed);
+    let Written::Behaviors(behaviors) = ask(Question { stage, proposal: Some(proposal.clone()), ..first }).await?
+    else {
+        return wrong();
+    };
+    Ok(Made { proposal, paths, behaviors })
+}
+
 /// One stage, asked again with what was wrong until it is right.
 async fn ask(mut question: Question) -> Result<Written, Vec<Fault>> {
     let context = AuthorContext::default();

@@ -10,7 +10,7 @@ use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Bus, Mode, ZenohConfig, keys};
+use socrates_link::{Bus, keys};
 use socrates_model::job::Stage;
 use tempfile::TempDir;
 use tokio::io::AsyncReadExt as _;
@@ -21,7 +21,7 @@ use tokio::time::Instant;
 
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
-use crate::folder;
+use crate::router::{ENDPOINT_FILE, Router, SOCKET, read_endpoint};
 
 /// How long a child may take to leave before it is ended.
 const LEAVE_LIMIT: Duration = Duration::from_secs(3);
@@ -35,10 +35,6 @@ const PAUSE: Duration = Duration::from_millis(50);
 const LONGEST_PAUSE: Duration = Duration::from_secs(2);
 /// Most of what a child says at its end that is read, bytes.
 const LAST_WORDS: u64 = 64 * 1024;
-/// File in the work folder that tells `watch`, `status` and viewers where to connect, for its owner alone. Its lines:
-/// the endpoint of the bus, the namespace, and the folder of the shared memory where the run has one.
-pub(crate) const ENDPOINT_FILE: &str = "endpoint";
-
 /// The running system of one `socrates run`.
 pub(crate) struct Supervisor {
     /// The bus, with this process as its router.
@@ -104,20 +100,8 @@ impl Supervisor {
         driven_by: Option<&str>,
     ) -> Result<Self, Complaint> {
         let namespace = "run";
-        if let Some((before, _)) = read_endpoint(work)
-            && let Some(socket) = before.strip_prefix(SOCKET)
-        {
-            folder::remove_socket_folder(Path::new(socket));
-        }
-        let socket = folder::socket_folder(work, &config.program().temp)?;
-        let endpoint = format!("{SOCKET}{}", folder::socket(socket.path()).display());
-        let bus = listen(&endpoint, config.number("supervisor.port"), namespace).await?;
+        let Router { bus, socket, endpoint } = Router::open(work, config, namespace).await?;
         let mut presence = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| ours(&why.to_string()))?;
-        let shared = crate::process::shared_memory(config).root;
-        let places = format!("{endpoint}\n{namespace}\n{}\n", shared.display());
-        folder::write_private(&work.join(ENDPOINT_FILE), &places).map_err(|why| {
-            Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
-        })?;
         let (report, gave_up) = mpsc::channel(16);
         let restarts = usize::try_from(config.number("supervisor.restarts")).unwrap_or(20);
         let (mut workers, mut orchestrator) = (Crew::new(), Crew::new());
@@ -171,21 +155,7 @@ fn ours(what: &str) -> Complaint {
     Complaint::input(what, "`socrates doctor` checks this machine").with_code(Code::Ours)
 }
 
-/// Begin of the endpoint of a socket.
-const SOCKET: &str = "unixsock-stream/";
-
 /// Opens the router on a socket, and on a port of this machine where one is asked for.
-async fn listen(endpoint: &str, port: u64, namespace: &str) -> Result<Arc<dyn Bus>, Complaint> {
-    let mut config = ZenohConfig::new(Mode::Router, namespace, "supervisor").listen(endpoint);
-    if port != 0 {
-        config = config.listen(&format!("tcp/127.0.0.1:{port}"));
-    }
-    socrates_link::join(config).await.map_err(|why| {
-        let hint = "set supervisor.port to 0 for none, or to a free one; `socrates doctor` checks this machine";
-        Complaint::input(format!("the bus of the run cannot be opened: {why}"), hint)
-    })
-}
-
 fn roles(
     work: &Path,
     endpoint: &str,
@@ -374,13 +344,6 @@ pub(crate) fn endpoint(what: &str) -> Option<(String, String)> {
         endpoint.strip_prefix(SOCKET).is_none_or(|socket| std::os::unix::net::UnixStream::connect(socket).is_ok())
     };
     read_endpoint(&Path::new(what).join(".socrates")).filter(listens)
-}
-
-/// Endpoint and namespace that a work folder names.
-fn read_endpoint(work: &Path) -> Option<(String, String)> {
-    let text = std::fs::read_to_string(work.join(ENDPOINT_FILE)).ok()?;
-    let mut lines = text.lines();
-    Some((lines.next()?.to_owned(), lines.next().unwrap_or("main").to_owned()))
 }
 
 #[cfg(test)]

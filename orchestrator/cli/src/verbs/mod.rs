@@ -13,6 +13,7 @@ mod request;
 mod run;
 mod scenarios;
 mod score;
+mod serve;
 mod simulate;
 mod video;
 
@@ -101,6 +102,8 @@ pub(crate) enum Verb {
     Simulate(simulate::Simulate),
     /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw,gesture]`, or MCAP).
     Score(score::Score),
+    /// Keep scenarios ready, whose runs drivers outside ask for one after the other: for reinforcement learning.
+    Serve(serve::Serve),
     /// Watch the agent states of a run that is being made.
     Watch(look::Watch),
     /// Show how the scenarios of a folder stand, while they are made and afterwards.
@@ -156,6 +159,7 @@ impl Verb {
             Self::Labels(verb) => verb.act(talk),
             Self::Simulate(verb) => verb.act(talk),
             Self::Score(verb) => verb.act(talk),
+            Self::Serve(verb) => verb.act(talk, config).await,
             Self::Watch(verb) => verb.act(talk).await,
             Self::Status(verb) => verb.act(talk).await,
             Self::Explain(verb) => verb.act(talk),
