@@ -39,9 +39,9 @@ Person = namedtuple("Person", "number in_sight gesture x y vx vy yaw radius")
 """Somebody: number k of `human_k`, whether the robot sees them, the name of their gesture, center in m, velocity in m/s,
 heading in rad, radius in m."""
 
-Step = namedtuple("Step", "session call time x y yaw v vy omega goal waypoint people doors lidar")
-"""What the robot knows at one step: time in s, pose in m and rad, speeds in m/s and rad/s, goal and next waypoint as (x, y),
-a list of `Person`, whether each door of the mission is open, ranges of 360 beams in m (beam 0 straight ahead, then
+Step = namedtuple("Step", "session call time x y yaw v vy omega goal ahead people doors lidar")
+"""What the robot knows at one step: time in s, pose in m and rad, speeds in m/s and rad/s, goal and the point of
+the plan that is `look_ahead` ahead as (x, y), a list of `Person`, whether each door of the mission is open, ranges of 360 beams in m (beam 0 straight ahead, then
 counter-clockwise; infinite where nothing is hit; empty unless asked for)."""
 
 Command = namedtuple("Command", "v vy omega gesture waiting", defaults=(0.0, 0.0, 0.0, "NONE", False))
@@ -145,10 +145,11 @@ class Driver:
     `begin` raises refuses the run. An exception in `act` ends that run alone.
     """
 
-    def __init__(self, name, act, begin=None, end=None, *, rate_hz=10.0, people="seen", lidar=False, map=False,
-                 place=None, namespace=None):
+    def __init__(self, name, act, begin=None, end=None, *, rate_hz=10.0, look_ahead=0.8, people="seen", lidar=False,
+                 map=False, place=None, namespace=None):
         self.name, self.act, self.begin, self.end = name, act, begin, end
-        self.answer = {"version": VERSION, "rate_hz": rate_hz, "people": people, "lidar": lidar, "map": map}
+        self.answer = {"version": VERSION, "rate_hz": rate_hz, "look_ahead_m": look_ahead, "people": people,
+                       "lidar": lidar, "map": map}
         self.missions = {}
         endpoint, namespace = find(place, namespace)
         self.session = connect(endpoint)
@@ -283,7 +284,8 @@ else:
     class SocratesEnv(gymnasium.Env):
         """A run of a scenario as a Gymnasium environment; the runs come from a `socrates serve` that goes on.
 
-        Observation: `robot` (x, y, yaw, v, vy, omega), `goal` and `waypoint` relative to the robot (ahead, to the left),
+        Observation: `robot` (x, y, yaw, v, vy, omega), `goal` and `ahead` (the point of the
+        plan 0.8 m ahead) relative to the robot (ahead, to the left),
         `people` [most, 7] (ahead, to the left, velocity ahead, to the left, radius, in sight, here) nearest first, and
         `lidar` [360] where it is asked for. Action: (v, omega), of an omnidirectional robot (v, vy, omega), within the robot's
         limits. `reset(seed=…, options={"scenario": NAME})` chooses the run; without a seed a random one is drawn from the
@@ -305,7 +307,7 @@ else:
             spaces = {
                 "robot": box(-numpy.inf, numpy.inf, (6,), real),
                 "goal": box(-numpy.inf, numpy.inf, (2,), real),
-                "waypoint": box(-numpy.inf, numpy.inf, (2,), real),
+                "ahead": box(-numpy.inf, numpy.inf, (2,), real),
                 "people": box(-numpy.inf, numpy.inf, (most, 7), real),
             }
             if lidar:
@@ -365,7 +367,7 @@ else:
             seen = {
                 "robot": numpy.array((step.x, step.y, step.yaw, step.v, step.vy, step.omega), real),
                 "goal": numpy.array(relative(*step.goal), real),
-                "waypoint": numpy.array(relative(*step.waypoint), real),
+                "ahead": numpy.array(relative(*step.ahead), real),
                 "people": people,
             }
             if "lidar" in self.observation_space.spaces:
@@ -393,7 +395,8 @@ def crowdnav(predict, *, v_pref=None):
     """An `act` for `Driver` out of a CrowdNav policy: `predict(state)` gets `self_state` and `human_states` and gives an
     `ActionXY` (`vx`, `vy`: velocity in the map) or an `ActionRot` (`v`, `r`: speed and the turn of one step, rad).
 
-    A robot that cannot go to the side turns toward an `ActionXY` and drives as far as it faces it.
+    The goal that the policy sees is the point of the plan ahead: give the driver a `look_ahead` of some meters. A robot that
+    cannot go to the side turns toward an `ActionXY` and drives as far as it faces it.
     """
 
     def act(step, mission):
@@ -401,7 +404,7 @@ def crowdnav(predict, *, v_pref=None):
         fast = v_pref or robot["v_max_mps"]
         ahead, left = math.cos(step.yaw), math.sin(step.yaw)
         vx, vy = ahead * step.v - left * step.vy, left * step.v + ahead * step.vy
-        me = FullState(step.x, step.y, vx, vy, robot["radius_m"], *step.waypoint, fast, step.yaw)
+        me = FullState(step.x, step.y, vx, vy, robot["radius_m"], *step.ahead, fast, step.yaw)
         people = [ObservableState(p.x, p.y, p.vx, p.vy, p.radius) for p in step.people]
         action = predict(JointState(me, people))
         if hasattr(action, "vx"):

@@ -84,6 +84,9 @@ pub struct MissionAnswer {
     /// Steps per simulated second, 1 to 100. Default 10.
     #[serde(default = "ten")]
     pub rate_hz: f64,
+    /// How far ahead of the robot the point of the plan is that each step tells, 0.1 to 20 m. Default 0.8.
+    #[serde(default = "look_ahead")]
+    pub look_ahead_m: f64,
     /// Which people it wants to be shown.
     #[serde(default)]
     pub people: Shown,
@@ -100,6 +103,10 @@ pub struct MissionAnswer {
 
 const fn ten() -> f64 {
     10.0
+}
+
+const fn look_ahead() -> f64 {
+    0.8
 }
 
 /// Which people a driver is shown.
@@ -134,6 +141,12 @@ pub enum BadAnswer {
         /// The rate.
         found: f64,
     },
+    /// A point that is too near or too far.
+    #[error("`look_ahead_m` is {found}; allowed: 0.1 to 20")]
+    LookAhead {
+        /// The distance, m.
+        found: f64,
+    },
     /// The driver does not drive this run.
     #[error("the driver does not take this run: {why}")]
     Refused {
@@ -157,6 +170,9 @@ impl MissionAnswer {
         }
         if !(1.0..=100.0).contains(&answer.rate_hz) {
             return Err(BadAnswer::Rate { found: answer.rate_hz });
+        }
+        if !(0.1..=20.0).contains(&answer.look_ahead_m) {
+            return Err(BadAnswer::LookAhead { found: answer.look_ahead_m });
         }
         Ok(answer)
     }
@@ -206,6 +222,7 @@ mod tests {
             (r#"{"version": 2}"#, "speaks version 2; this program speaks version 1"),
             (r#"{"version": 1, "rate_hz": 0}"#, "`rate_hz` is 0; allowed: 1 to 100"),
             (r#"{"version": 1, "rate_hz": 1e9}"#, "`rate_hz` is 1000000000"),
+            (r#"{"version": 1, "look_ahead_m": 0}"#, "`look_ahead_m` is 0; allowed: 0.1 to 20"),
             (r#"{"version": 1, "rates": 3}"#, "unknown field `rates`"),
             (r#"{"version": 1, "error": "no map"}"#, "does not take this run: no map"),
         ] {

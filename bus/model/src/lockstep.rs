@@ -48,8 +48,8 @@ pub struct StepHead {
     pub call: u32,
     /// End of the robot's way, m.
     pub goal: Point,
-    /// The point that it has to pass next, m; the goal at last.
-    pub waypoint: Point,
+    /// The point of the plan that is so far ahead of the robot as the driver asked for, m; the goal at last.
+    pub ahead: Point,
 }
 
 /// A step as the driver reads it.
@@ -141,7 +141,7 @@ pub fn step_bytes(head: &StepHead, seen: &Observation<'_>, hidden: &[SeenPerson]
     to.count(lidar.len());
     to.put(0_u32.to_le_bytes());
     let pose = [seen.pose.x, seen.pose.y, seen.pose.yaw];
-    let goals = [head.goal.x, head.goal.y, head.waypoint.x, head.waypoint.y];
+    let goals = [head.goal.x, head.goal.y, head.ahead.x, head.ahead.y];
     let moves = [seen.v, seen.vy, seen.omega];
     [seen.time.secs()].into_iter().chain(pose).chain(moves).chain(goals).for_each(|value| to.real(value));
     let mut both: Vec<(&SeenPerson, u16)> = seen.people.iter().map(|person| (person, IN_SIGHT)).collect();
@@ -178,7 +178,7 @@ pub fn read_step(bytes: &[u8]) -> Option<Step> {
     let pose = Pose { x: from.real()?, y: from.real()?, yaw: from.real()? };
     let (velocity, omega) = ((from.real()?, from.real()?), from.real()?);
     let goal = Point::new(from.real()?, from.real()?);
-    let waypoint = Point::new(from.real()?, from.real()?);
+    let ahead = Point::new(from.real()?, from.real()?);
     from.skip(head_bytes.checked_sub(HEAD_BYTES)?)?;
     let person = |from: &mut Reader<'_>| {
         let (number, flags, code) = (from.u32()?, from.u16()?, from.u16()?);
@@ -193,7 +193,7 @@ pub fn read_step(bytes: &[u8]) -> Option<Step> {
     let open = from.0.get(..doors)?.iter().map(|byte| *byte != 0).collect();
     from.skip(doors.next_multiple_of(4))?;
     let lidar = (0..beams).map(|_| from.take().map(f32::from_le_bytes)).collect::<Option<Vec<f32>>>()?;
-    let head = StepHead { session, call, goal, waypoint };
+    let head = StepHead { session, call, goal, ahead };
     Some(Step { head, time_s, pose, velocity, omega, people, doors: open, lidar })
 }
 
@@ -346,7 +346,7 @@ mod tests {
     }
 
     fn written(lidar: &[f64]) -> (StepHead, Vec<u8>) {
-        let head = StepHead { session: 77, call: 3, goal: Point::new(9.0, 1.0), waypoint: Point::new(4.0, 1.0) };
+        let head = StepHead { session: 77, call: 3, goal: Point::new(9.0, 1.0), ahead: Point::new(4.0, 1.0) };
         let door = |open| SeenDoor { id: "d".into(), from: Point::origin(), to: Point::origin(), open };
         let observation = Observation {
             time: crate::SimTime::at_tick(150),

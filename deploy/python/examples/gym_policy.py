@@ -1,4 +1,4 @@
-"""An example policy in the Gymnasium environment: goes straight to the next waypoint, and slows down for people ahead.
+"""An example policy in the Gymnasium environment: follows the plan, and slows down for people ahead.
 
     socrates serve my.toml --out served &
     python3 gym_policy.py served
@@ -13,7 +13,7 @@ from socrates_env import SocratesEnv
 
 
 def policy(observation):
-    ahead, left = observation["waypoint"]
+    ahead, left = observation["ahead"]
     turn = math.atan2(left, ahead)
     near = min((math.hypot(row[0], row[1]) for row in observation["people"] if row[6] and row[0] > 0.0), default=9.0)
     return 0.8 * max(0.0, math.cos(turn)) * min(1.0, max(0.0, near - 0.9)), 1.5 * turn

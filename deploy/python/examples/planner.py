@@ -1,4 +1,4 @@
-"""A planner in thirty lines: drives to the next waypoint, and stops for people who are close ahead of it."""
+"""A planner in thirty lines: follows the plan, and stops for people who are close ahead of it."""
 
 import math
 import pathlib
@@ -10,7 +10,7 @@ from socrates_env import Command, Driver
 
 def act(step, mission):
     robot = mission["robot"]
-    to_x, to_y = step.waypoint[0] - step.x, step.waypoint[1] - step.y
+    to_x, to_y = step.ahead[0] - step.x, step.ahead[1] - step.y
     turn = math.remainder(math.atan2(to_y, to_x) - step.yaw, math.tau)
     if math.hypot(step.goal[0] - step.x, step.goal[1] - step.y) < 0.15:
         return Command(waiting=True)

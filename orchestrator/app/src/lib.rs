@@ -32,6 +32,7 @@ pub mod config;
 mod cores;
 pub mod cost;
 pub mod dev;
+pub mod drive_check;
 pub mod evaluate;
 pub mod exit;
 pub mod explain;

@@ -20,7 +20,7 @@ use tokio::task::JoinSet;
 
 use crate::bundle;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::Complaint;
 use crate::folder::Hold;
 use crate::in_process::{self, Made};
 use crate::output::Printer;
@@ -87,7 +87,7 @@ pub async fn serve(talk: &Printer, config: &Config, options: &ServeOptions) -> R
     let mut signals = Signals::listen()?;
     let router = Router::open(&work, config, "run").await?;
     let drive = Drive::read(
-        Some(config.text("simulation.drive")),
+        Some(&config.text("simulation.drive")),
         Some(&config.number("simulation.drive_patience_s").to_string()),
     );
     let drive = drive.map_err(|fault| Complaint::input(fault.message.to_string(), "see `simulation.drive`"))?;

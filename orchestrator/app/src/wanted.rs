@@ -80,7 +80,7 @@ fn spec(
         BTreeMap::from([("author".to_owned(), prepared.author.to_string()), ("pace".to_owned(), options.pace.clone())]);
     settings.extend(prepared.injected.clone());
     if prepared.is_driven() {
-        settings.insert("drive".to_owned(), config.text("simulation.drive").to_owned());
+        settings.insert("drive".to_owned(), config.text("simulation.drive"));
         settings.insert("drive_patience_s".to_owned(), config.number("simulation.drive_patience_s").to_string());
     }
     settings.extend(prepared.style.clone());

@@ -135,6 +135,14 @@ fn ways(location: &Location, every: usize) -> Vec<Vec<NodeId>> {
     found
 }
 
+/// The first way of the office, on which somebody comes toward the robot.
+pub(crate) fn one_frontal() -> Setup {
+    let location = socrates_maps::shipped::load("office").unwrap();
+    let way = ways(&location, 37).swap_remove(0);
+    let (_, cast, node) = relations(&location, &way).swap_remove(0);
+    scenario(&location, way, cast, &[node], vec![], false)
+}
+
 fn relations(location: &Location, way: &[NodeId]) -> Vec<(&'static str, Vec<Cast>, NodeId)> {
     let mut all = Vec::new();
     let middle = way[way.len() / 2].clone();

@@ -4,6 +4,7 @@ mod bt;
 mod bundle;
 mod cluster;
 mod dev;
+mod drive;
 mod evaluate;
 mod explain;
 mod library;
@@ -104,6 +105,8 @@ pub(crate) enum Verb {
     Score(score::Score),
     /// Keep scenarios ready, whose runs drivers outside ask for one after the other: for reinforcement learning.
     Serve(serve::Serve),
+    /// Try a driver outside.
+    Drive(drive::Drive),
     /// Watch the agent states of a run that is being made.
     Watch(look::Watch),
     /// Show how the scenarios of a folder stand, while they are made and afterwards.
@@ -160,6 +163,7 @@ impl Verb {
             Self::Simulate(verb) => verb.act(talk),
             Self::Score(verb) => verb.act(talk),
             Self::Serve(verb) => verb.act(talk, config).await,
+            Self::Drive(verb) => verb.act(talk, config).await,
             Self::Watch(verb) => verb.act(talk).await,
             Self::Status(verb) => verb.act(talk).await,
             Self::Explain(verb) => verb.act(talk),

@@ -11,6 +11,8 @@ mod again;
 mod mission;
 mod over_bus;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 use socrates_engine::Onlooker;
 use socrates_model::driver::Commands;

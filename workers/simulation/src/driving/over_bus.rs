@@ -8,7 +8,7 @@ use socrates_kit::Cancel;
 use socrates_link::{Bus, LinkError, keys};
 use socrates_model::driver::{EndMessage, MissionAnswer, Shown};
 use socrates_model::lockstep::{MAP_PART_CELLS, StepHead, map_bytes, read_command, step_bytes};
-use socrates_model::{Command, Digest, Fault, Observation, Point, RobotDriver, SeenPerson};
+use socrates_model::{Command, Digest, Fault, Observation, Point, Polyline, RobotDriver, SeenPerson};
 use tokio::runtime::Handle;
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
@@ -18,8 +18,6 @@ use super::{Drive, Driver, Ended, Mode, Outside, Wanted, fault};
 
 /// A command that is older than this holds no more: the robot stops, simulated s.
 const WATCHDOG_S: f64 = 0.5;
-/// A waypoint is passed within this, m.
-const PASSED_M: f64 = 0.6;
 /// Longest wait for a driver to take note of the end.
 const FAREWELL: Duration = Duration::from_secs(1);
 /// Sessions are told in JSON as well, whose numbers hold so many bits everywhere.
@@ -124,7 +122,7 @@ impl Outside for OverBus {
     fn begin(&mut self, wanted: &Wanted<'_>) -> Result<Box<dyn Driver>, Fault> {
         let session = self.session(wanted);
         let answer = self.handle.block_on(self.hello(wanted, session))?;
-        let waypoints = wanted.mission.waypoints.clone();
+        let plan = Polyline::new(&socrates_planners::free_way(wanted.mission));
         Ok(Box::new(Remote {
             name: wanted.driver.to_owned(),
             bus: Arc::clone(&self.bus),
@@ -133,8 +131,9 @@ impl Outside for OverBus {
             cancel: self.cancel.clone(),
             session,
             answer,
-            waypoints,
-            passed: 0,
+            goal: wanted.mission.waypoints.last().copied(),
+            plan,
+            s: 0.0,
             call: 0,
             last: Command::default(),
             last_s: 0.0,
@@ -154,9 +153,10 @@ struct Remote {
     cancel: Cancel,
     session: u64,
     answer: MissionAnswer,
-    waypoints: Vec<Point>,
-    /// Waypoints that were passed.
-    passed: usize,
+    goal: Option<Point>,
+    plan: Polyline,
+    /// How far along the plan the robot is, m.
+    s: f64,
     call: u32,
     last: Command,
     /// When the newest command came, simulated s.
@@ -170,14 +170,11 @@ struct Remote {
 
 impl Remote {
     fn head(&mut self, at: &Point) -> StepHead {
-        let last = self.waypoints.len().saturating_sub(1);
-        while self.passed < last && self.waypoints.get(self.passed).is_some_and(|point| (point - at).norm() < PASSED_M)
-        {
-            self.passed += 1;
-        }
-        let goal = self.waypoints.last().copied().unwrap_or(*at);
-        let waypoint = self.waypoints.get(self.passed).copied().unwrap_or(goal);
-        StepHead { session: self.session, call: self.call, goal, waypoint }
+        self.s = self.plan.progress(at, self.s, (0.3, 3.0)).0;
+        let goal = self.goal.unwrap_or(*at);
+        let ahead =
+            if self.plan.points().is_empty() { goal } else { self.plan.point(self.s + self.answer.look_ahead_m) };
+        StepHead { session: self.session, call: self.call, goal, ahead }
     }
 
     fn bytes(&mut self, seen: &Observation<'_>) -> Vec<u8> {
