@@ -5,6 +5,7 @@ use socrates_model::{Fault, FaultCode, PlannerName, RobotDriver};
 use crate::mission::Mission;
 use crate::reactive::Reactive;
 use crate::reference::Reference;
+use crate::walker::Walker;
 
 /// Makes a planner.
 type Maker = fn(&Mission) -> Box<dyn RobotDriver>;
@@ -30,6 +31,21 @@ pub const CATALOG: &[PlannerSheet] = &[
         name: "reactive",
         about: "a simple baseline: the shortest free way through the waypoints, stops for people ahead, goes round who stands; no script",
         make: Some(|mission| Box::new(Reactive::new(mission))),
+    },
+    PlannerSheet {
+        name: "straight_line",
+        about: "a control: the shortest free way through the waypoints at full speed; it sees walls and doors, and nobody",
+        make: Some(|mission| Box::new(Walker::straight(mission))),
+    },
+    PlannerSheet {
+        name: "social_force",
+        about: "a robot that social forces push as they push people, with the constants of the HuNavSim family",
+        make: Some(|mission| Box::new(Walker::forces(mission))),
+    },
+    PlannerSheet {
+        name: "orca",
+        about: "optimal reciprocal collision avoidance: the velocity nearest to its wish at which nobody is hit within 5 s",
+        make: Some(|mission| Box::new(Walker::avoids(mission))),
     },
     PlannerSheet { name: PlannerName::NO_ROBOT, about: "no robot at all: the twin run", make: None },
 ];

@@ -63,6 +63,17 @@ impl Ground {
         self.shut.iter().fold(wall, |least, (from, to)| least.min(nearest_on_segment(point, from, to).0))
     }
 
+    /// The nearest wall point in each of so many sectors within reach, and of each shut door.
+    pub(crate) fn wall_points(&self, at: &Point, reach_m: f64, sectors: usize) -> Vec<Point> {
+        let mut points = self.field.sectors(at, reach_m, sectors);
+        let near = |(from, to): &(Point, Point)| {
+            let (distance_m, point) = nearest_on_segment(at, from, to);
+            (distance_m < reach_m).then_some(point)
+        };
+        points.extend(self.shut.iter().filter_map(near));
+        points
+    }
+
     /// Whether the robot's disc with a margin can go straight.
     pub(crate) fn straight(&self, from: &Point, to: &Point, margin_m: f64) -> bool {
         let way = to - from;

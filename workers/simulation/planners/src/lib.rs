@@ -24,6 +24,7 @@ mod reactive;
 mod reference;
 mod script;
 mod waiting;
+mod walker;
 
 #[cfg(test)]
 mod tests;
