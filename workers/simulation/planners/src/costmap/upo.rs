@@ -1,0 +1,168 @@
+//! The social layer of the `nav2_social_costmap_plugin` of the UPO group.
+
+use std::f64::consts::FRAC_PI_2;
+
+use socrates_model::{SeenPerson, Vector};
+
+use super::grid::{Bounds, Costmap, MOST};
+use super::layered::{Layer, Sensed};
+use super::people::{Kept, cost_of, raise};
+use super::proxemic::{gauss, reach_m, turned, walk};
+
+/// Somebody slower than this stands, m/s.
+const STILL_MPS: f64 = 0.1;
+
+/// Parameters of the layer; defaults are the plugin's, but for the amplitude: there it is 255, which makes the cell of a person
+/// unknown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UpoSocialParams {
+    /// Costs below this are left out; default 5.
+    pub cutoff: f64,
+    /// Cost in the middle; default 252. More than 252 becomes 252.
+    pub amplitude: f64,
+    /// Variance along the walk in front of somebody at no speed, m²; default 0.25, like every one below.
+    pub covariance_front_height: f64,
+    /// Variance across the walk in front, m².
+    pub covariance_front_width: f64,
+    /// Variance along the walk behind, m².
+    pub covariance_rear_height: f64,
+    /// Variance across the walk behind, m².
+    pub covariance_rear_width: f64,
+    /// Variance away from the walk on the right-hand side, m².
+    pub covariance_right_height: f64,
+    /// Variance along the walk on the right-hand side, m².
+    pub covariance_right_width: f64,
+    /// Variance round somebody who stands, m².
+    pub covariance_when_still: f64,
+    /// How much longer the front is, for each m/s; default 5.
+    pub speed_factor_multiplier: f64,
+    /// Whether the right-hand side is dear too, so that the robot passes on the left of people; default true.
+    pub use_passing: bool,
+    /// So long somebody no longer seen is kept, s; default 0.75.
+    pub keep_time: f64,
+}
+
+impl Default for UpoSocialParams {
+    fn default() -> Self {
+        /// The plugin's one default for every variance, m².
+        const VARIANCE_M2: f64 = 0.25;
+        Self {
+            cutoff: 5.0,
+            amplitude: f64::from(MOST),
+            covariance_front_height: VARIANCE_M2,
+            covariance_front_width: VARIANCE_M2,
+            covariance_rear_height: VARIANCE_M2,
+            covariance_rear_width: VARIANCE_M2,
+            covariance_right_height: VARIANCE_M2,
+            covariance_right_width: VARIANCE_M2,
+            covariance_when_still: VARIANCE_M2,
+            speed_factor_multiplier: 5.0,
+            use_passing: true,
+            keep_time: 0.75,
+        }
+    }
+}
+
+impl UpoSocialParams {
+    /// The example of the plugin's README.
+    #[must_use]
+    pub fn example() -> Self {
+        Self {
+            cutoff: 10.0,
+            covariance_front_height: 0.4,
+            covariance_right_height: 0.3,
+            covariance_right_width: 0.2,
+            ..Self::default()
+        }
+    }
+
+    fn front(&self, speed_mps: f64) -> f64 {
+        self.covariance_front_height * (1.0 + self.speed_factor_multiplier * speed_mps)
+    }
+
+    /// Cost at an offset from a person, m; `None` below the cutoff. Whoever stands has one round Gaussian; whoever walks has one
+    /// in front, one behind, and with `use_passing` one to the right, of which the largest counts.
+    #[must_use]
+    pub fn cost(&self, person: &SeenPerson, offset: &Vector) -> Option<u8> {
+        let speed = person.velocity.norm();
+        let ahead = walk(&person.velocity);
+        let value = if speed < STILL_MPS {
+            gauss(offset, &ahead, (self.covariance_when_still, self.covariance_when_still))
+        } else {
+            let own = if offset.dot(&ahead) > 0.0 {
+                (self.front(speed), self.covariance_front_width)
+            } else {
+                (self.covariance_rear_height, self.covariance_rear_width)
+            };
+            let right = turned(&ahead, -FRAC_PI_2);
+            let beside = if self.use_passing && offset.dot(&right) > 0.0 {
+                gauss(offset, &right, (self.covariance_right_height, self.covariance_right_width))
+            } else {
+                0.0
+            };
+            gauss(offset, &ahead, own).max(beside)
+        };
+        let value = self.amplitude * value;
+        (value >= self.cutoff).then(|| cost_of(value))
+    }
+
+    fn reach_m(&self, person: &SeenPerson) -> f64 {
+        let speed = person.velocity.norm();
+        let widest = if speed < STILL_MPS {
+            self.covariance_when_still
+        } else {
+            [
+                self.front(speed),
+                self.covariance_front_width,
+                self.covariance_rear_height,
+                self.covariance_rear_width,
+                self.covariance_right_height,
+                self.covariance_right_width,
+            ]
+            .into_iter()
+            .fold(0.0, f64::max)
+        };
+        reach_m(self.amplitude, self.cutoff, widest)
+    }
+}
+
+/// The layer.
+#[derive(Debug)]
+pub struct UpoSocialLayer {
+    params: UpoSocialParams,
+    kept: Kept,
+}
+
+impl UpoSocialLayer {
+    /// The layer.
+    #[must_use]
+    pub fn new(params: &UpoSocialParams) -> Self {
+        Self { params: *params, kept: Kept::new(params.keep_time) }
+    }
+}
+
+impl Layer for UpoSocialLayer {
+    fn look(&mut self, map: &Costmap, sensed: &Sensed<'_>, bounds: &mut Bounds) {
+        self.kept.see(sensed);
+        let mut now = Bounds::EMPTY;
+        for person in self.kept.people() {
+            now.join(&map.square(&person.at, self.params.reach_m(person)));
+        }
+        self.kept.widen(now, bounds);
+    }
+
+    fn write(&mut self, map: &mut Costmap, bounds: &Bounds, _sensed: &Sensed<'_>) {
+        for person in self.kept.people() {
+            let reach_m = self.params.reach_m(person);
+            raise(map, bounds, (&person.at, reach_m), |offset| self.params.cost(person, offset));
+        }
+    }
+
+    fn roll(&mut self, _columns: isize, _rows: isize) {
+        self.kept.roll();
+    }
+
+    fn clear(&mut self) {
+        self.kept.clear();
+    }
+}
