@@ -1,0 +1,169 @@
+//! The stack in the world of the planners' tests.
+
+use socrates_model::{Command, Cues, Observation, Point, Pose, RobotDriver, SeenPerson, SimTime};
+
+use super::*;
+use crate::Mission;
+use crate::costmap::{LayerParams, OraclePeopleParams, UpoSocialParams};
+use crate::navfn::PlanError;
+use crate::rpp::{RegulatedPurePursuit, RppParams};
+use crate::tests::{drive, mission, person, scan};
+
+fn stack(params: StackParams, mission: &Mission) -> Stack {
+    let period_s = 1.0 / params.controller_frequency;
+    let rpp = RppParams { period_s, robot_radius: params.robot_radius, ..RppParams::default() };
+    Stack::new(params, mission, Box::new(RegulatedPurePursuit::new(&rpp)))
+}
+
+fn shipped(mission: &Mission) -> StackParams {
+    StackParams::shipped(&mission.robot)
+}
+
+/// Smallest distance between the surfaces of the robot and of somebody who stands, m.
+fn least_m(way: &[(Pose, Command)], stands: &SeenPerson) -> f64 {
+    way.iter().map(|(pose, _)| (pose.point() - stands.at).norm() - 0.53).fold(9.0, f64::min)
+}
+
+#[test]
+fn the_setup_of_the_paper_goes_through_its_waypoints_at_half_a_meter_a_second() {
+    let mut task = mission(vec![]);
+    task.waypoints = vec![Point::new(2.0, 3.0), Point::new(6.0, 4.5), Point::new(10.0, 2.0)];
+    let mut stack = stack(StackParams::default(), &task);
+    assert!((stack.rate_hz() - 30.0).abs() < 1e-12);
+    let way = drive(&mut stack, &|_| vec![], 35.0);
+    for point in &task.waypoints {
+        let near = way.iter().map(|(pose, _)| (pose.point() - point).norm()).fold(9.0, f64::min);
+        assert!(near < 0.26, "{point} passed at {near} m");
+    }
+    let fastest = way.iter().map(|(_, command)| command.v).fold(0.0, f64::max);
+    assert!((0.45..=0.5).contains(&fastest), "{fastest} m/s");
+    let (end, command) = way.last().unwrap();
+    assert!((end.point() - Point::new(10.0, 2.0)).norm() < 0.3 && command.waiting, "{end:?}, {command:?}");
+    assert_eq!((stack.waypoints().index(), stack.waypoints().missed().len()), (3, 0));
+    assert_eq!(stack.errors().last(), None);
+}
+
+#[test]
+fn it_pauses_at_a_waypoint() {
+    let mut task = mission(vec![]);
+    task.waypoints = vec![Point::new(2.0, 3.0), Point::new(4.0, 3.0), Point::new(6.0, 3.0)];
+    let mut stack = stack(shipped(&task), &task);
+    let way = drive(&mut stack, &|_| vec![], 30.0);
+    let pauses = way.iter().filter(|(pose, command)| command.waiting && (pose.x - 4.0).abs() < 0.5).count();
+    assert!((4..=5).contains(&pauses), "{pauses} calls of 0.05 s");
+}
+
+#[test]
+fn people_are_seen_by_lidar_alone_unless_a_layer_is_about_them() {
+    let task = mission(vec![]);
+    let stands = person(9.0, 3.05, 0.0, 0.0);
+    let run = |params: StackParams, lidar: bool| {
+        let mut stack = stack(params, &task);
+        let mut pose = Pose::new(2.0, 3.0, 0.0);
+        let mut least = 9.0_f64;
+        for call in 0..800_u64 {
+            let seen = [stands];
+            let ranges = || scan(&pose, if lidar { &seen } else { &[] });
+            let command = stack.drive(&Observation {
+                time: SimTime::from_nanos(call * 50_000_000),
+                pose,
+                v: 0.0,
+                omega: 0.0,
+                people: &seen,
+                doors: &[],
+                lidar: &ranges,
+                cues: Cues::default(),
+            });
+            pose.yaw += command.omega * 0.05;
+            pose.x += command.v * libm::cos(pose.yaw) * 0.05;
+            pose.y += command.v * libm::sin(pose.yaw) * 0.05;
+            least = least.min((pose.point() - stands.at).norm() - 0.53);
+        }
+        least
+    };
+    assert!(run(shipped(&task), true) > 0.05);
+    assert!(run(shipped(&task), false) < 0.0, "whom the lidar does not see it does not see");
+    let mut oracle = shipped(&task);
+    for costmap in [&mut oracle.global_costmap, &mut oracle.local_costmap] {
+        costmap.layers.insert(1, LayerParams::OraclePeople(OraclePeopleParams::default()));
+    }
+    assert!(run(oracle, false) > 0.05);
+}
+
+#[test]
+fn a_social_layer_gives_people_a_wider_berth() {
+    let task = mission(vec![]);
+    let stands = person(9.0, 3.05, 0.0, 0.0);
+    let run = |params: StackParams| {
+        let way = drive(&mut stack(params, &task), &|_| vec![stands], 60.0);
+        assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "{:?}", way.last());
+        least_m(&way, &stands)
+    };
+    let plain = run(shipped(&task));
+    let mut social = shipped(&task);
+    for costmap in [&mut social.global_costmap, &mut social.local_costmap] {
+        costmap.layers.push(LayerParams::UpoSocial(UpoSocialParams::example()));
+    }
+    let social = run(social);
+    assert!(social > plain + 0.3, "{social} m with the layer, {plain} m without");
+}
+
+/// People across the whole floor, until they leave.
+fn wall(until_s: f64) -> impl Fn(f64) -> Vec<SeenPerson> {
+    move |now_s: f64| {
+        let people = (0..11).map(|place| person(9.0, 0.4 + 0.52 * f64::from(place), 0.0, 0.0));
+        if now_s < until_s { people.collect() } else { vec![] }
+    }
+}
+
+#[test]
+fn where_no_way_leads_it_recovers_and_goes_on_when_the_way_is_free() {
+    let task = mission(vec![]);
+    let mut stack = stack(shipped(&task), &task);
+    let way = drive(&mut stack, &wall(18.0), 75.0);
+    let before = way.iter().take(18 * 20).map(|(pose, _)| pose.x).fold(0.0, f64::max);
+    assert!(before < 9.0 - 0.53, "{before}");
+    assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "{:?}, {:?}", way.last(), stack.errors());
+    let counts = stack.errors().counts();
+    assert!(counts.contains_key(&NavError::Plan(PlanError::NoValidPath)), "{counts:?}");
+    assert!(way.iter().any(|(_, command)| command.v.abs() < 0.01 && command.omega > 0.9), "it spins");
+}
+
+#[test]
+fn a_waypoint_behind_a_wall_of_people_is_given_up_after_six_recoveries() {
+    let task = mission(vec![]);
+    let mut stack = stack(shipped(&task), &task);
+    drive(&mut stack, &wall(1000.0), 200.0);
+    // Both the middle waypoint and the last are beyond the people.
+    assert_eq!((stack.waypoints().missed(), stack.waypoints().goal()), ([1, 2].as_slice(), None));
+    assert_eq!(stack.errors().last(), Some(NavError::GivenUp));
+    assert_eq!(stack.errors().counts().get(&NavError::GivenUp), Some(&2));
+    assert_eq!(stack.errors().last().map(NavError::code), Some(9002));
+}
+
+#[test]
+fn a_robot_that_is_held_makes_no_progress() {
+    let task = mission(vec![]);
+    let mut stack = stack(shipped(&task), &task);
+    let pose = Pose::new(2.0, 3.0, 0.0);
+    let lidar = || scan(&pose, &[]);
+    for call in 0..240_u64 {
+        let time = SimTime::from_nanos(call * 50_000_000);
+        let cues = Cues::default();
+        let seen = Observation { time, pose, v: 0.0, omega: 0.0, people: &[], doors: &[], lidar: &lidar, cues };
+        stack.drive(&seen);
+        let late = call > 10 * 20 + 10;
+        assert_eq!(stack.errors().last(), late.then_some(NavError::FailedToMakeProgress), "call {call}");
+    }
+}
+
+#[test]
+fn the_same_run_twice_gives_the_same_commands() {
+    let task = mission(vec![]);
+    let run = || {
+        let walks = |now: f64| vec![person(14.0 - 0.8 * now, 3.1, -0.8, 0.0), person(9.0, 2.5, 0.0, 0.0)];
+        drive(&mut stack(shipped(&task), &task), &walks, 30.0)
+    };
+    let (first, second) = (run(), run());
+    assert!(first.iter().zip(&second).all(|(a, b)| a.0 == b.0 && a.1 == b.1));
+}
