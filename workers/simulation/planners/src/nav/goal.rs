@@ -1,5 +1,7 @@
 //! Whether the goal is reached.
 
+use std::f64::consts::TAU;
+
 use socrates_model::Pose;
 use socrates_model::geometry::wrap_angle;
 
@@ -8,7 +10,7 @@ use socrates_model::geometry::wrap_angle;
 pub struct GoalParams {
     /// So near is there, m; default 0.25.
     pub xy_goal_tolerance: f64,
-    /// A heading so near to the goal's is right, rad; default 6.28, as in the paper's setup: any heading (Nav2 0.25).
+    /// A heading so near to the goal's is right, rad; default a whole turn, as in the paper's setup: any heading (Nav2 0.25).
     pub yaw_goal_tolerance: f64,
     /// Whether a robot that was there stays there while it turns; default true.
     pub stateful: bool,
@@ -18,7 +20,7 @@ pub struct GoalParams {
 
 impl Default for GoalParams {
     fn default() -> Self {
-        Self { xy_goal_tolerance: 0.25, yaw_goal_tolerance: 6.28, stateful: true, path_length_tolerance: 1.0 }
+        Self { xy_goal_tolerance: 0.25, yaw_goal_tolerance: TAU, stateful: true, path_length_tolerance: 1.0 }
     }
 }
 

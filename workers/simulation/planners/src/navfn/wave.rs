@@ -6,7 +6,7 @@ use crate::costmap::{Costmap, INSCRIBED, UNKNOWN};
 /// Cost of a free cell.
 pub(super) const NEUTRAL: f32 = 50.0;
 /// Cost of a cell grows so much for each unit of the costmap.
-const FACTOR: f32 = 0.8;
+const FACTOR: f64 = 0.8;
 /// Costs from here on are obstacles.
 const OBSTACLE: u8 = 254;
 /// Cost of the dearest cell that a way may lead through, and of unknown ones.
@@ -44,7 +44,7 @@ fn costs(allow_unknown: bool) -> [u8; 256] {
     std::array::from_fn(|cost| {
         let cost = u8::try_from(cost).unwrap_or(UNKNOWN);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 50 and 253")]
-        let dear = (NEUTRAL + FACTOR * f32::from(cost)).min(f32::from(DEAREST)) as u8;
+        let dear = (f64::from(NEUTRAL) + FACTOR * f64::from(cost)).min(f64::from(DEAREST)) as u8;
         if cost < INSCRIBED {
             dear
         } else if cost == UNKNOWN && allow_unknown {
