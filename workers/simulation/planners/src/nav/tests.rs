@@ -1,9 +1,13 @@
-//! The stack in the world of the planners' tests.
+//! The stack in the world of the planners' tests, and among posts.
 
-use socrates_model::{Command, Cues, Observation, Point, Pose, RobotDriver as _, SeenPerson, SimTime};
+use std::sync::Arc;
+
+use socrates_maps::DistanceField;
+use socrates_model::{Cell, Command, Cues, Observation, Point, Pose, RobotDriver as _, SeenPerson, SimTime};
 
 use super::*;
 use crate::Mission;
+use crate::costmap::fixture::Chance;
 use crate::costmap::{LayerParams, OraclePeopleParams, UpoSocialParams};
 use crate::navfn::PlanError;
 use crate::rpp::{RegulatedPurePursuit, RppParams};
@@ -181,4 +185,73 @@ fn the_same_run_twice_gives_the_same_commands() {
     };
     let (first, second) = (run(), run());
     assert!(first.iter().zip(&second).all(|(a, b)| a.0 == b.0 && a.1 == b.1));
+}
+
+/// A room of 10 m with posts of 0.2 m, free at two corners.
+fn among_posts(seed: u64) -> Mission {
+    let mut task = mission(vec![]);
+    let side = 200_usize;
+    let mut chance = Chance::new(seed);
+    let mut cells = vec![Cell::Free; side * side];
+    for place in 0..side {
+        for wall in [place, place * side, place * side + side - 1, (side - 1) * side + place] {
+            cells[wall] = Cell::Occupied;
+        }
+    }
+    for _ in 0..12 {
+        let (column, row) = (10 + chance.below(176) as usize, 10 + chance.below(176) as usize);
+        // Rows come from the top: the robot starts at the lower left.
+        if (column < 40 && row > 150) || (column > 150 && row < 40) {
+            continue;
+        }
+        (0..4).for_each(|up| cells[(row + up) * side + column..(row + up) * side + column + 4].fill(Cell::Occupied));
+    }
+    task.grid.width = side;
+    task.grid.height = side;
+    task.grid.resolution_m = 0.05;
+    task.grid.cells = cells;
+    task.field = Arc::new(DistanceField::new(&task.grid));
+    task.waypoints = vec![Point::new(1.0, 1.0), Point::new(9.0, 9.0)];
+    task
+}
+
+#[test]
+fn among_posts_it_reaches_its_goal_and_touches_none() {
+    for seed in 0..12 {
+        let task = among_posts(seed);
+        let mut stack = stack(shipped(&task), &task);
+        let (mut pose, mut v, mut omega, mut least) = (Pose::new(1.0, 1.0, 0.0), 0.0_f64, 0.0_f64, 9.0_f64);
+        for call in 0..1200_u64 {
+            let field = &task.field;
+            let range = |beam: u32| {
+                let angle = pose.yaw + f64::from(beam).to_radians();
+                let mut gone = 0.0;
+                while gone < 12.0 {
+                    let free = field.clearance(&Point::new(pose.x + gone * angle.cos(), pose.y + gone * angle.sin()));
+                    if free < 0.005 {
+                        return gone;
+                    }
+                    gone += free;
+                }
+                12.0
+            };
+            let lidar = || (0..360).map(range).collect();
+            let time = SimTime::from_nanos(call * 50_000_000);
+            let cues = Cues::default();
+            let seen = Observation { time, pose, v, omega, people: &[], doors: &[], lidar: &lidar, cues };
+            let command = stack.drive(&seen);
+            v += (command.v - v).clamp(-0.05, 0.05);
+            omega = command.omega;
+            pose.yaw += omega * 0.05;
+            pose.x += v * libm::cos(pose.yaw) * 0.05;
+            pose.y += v * libm::sin(pose.yaw) * 0.05;
+            least = least.min(field.clearance(&pose.point()) - task.robot.radius_m);
+            if stack.waypoints().goal().is_none() {
+                break;
+            }
+        }
+        let errors = stack.errors();
+        assert!((pose.point() - Point::new(9.0, 9.0)).norm() < 0.3, "seed {seed}: ends at {pose:?}, {errors:?}");
+        assert!(least > 0.0, "seed {seed}: {least} m from a post");
+    }
 }

@@ -10,7 +10,7 @@ const FACTOR: f64 = 0.8;
 /// Costs from here on are obstacles.
 const OBSTACLE: u8 = 254;
 /// Cost of the dearest cell that a way may lead through, and of unknown ones.
-const DEAREST: u8 = 253;
+const DEAREST: f32 = 253.0;
 /// Potential of a cell that was not reached.
 pub(super) const UNREACHED: f32 = 1e10;
 /// The threshold between this round and later ones rises by so much.
@@ -18,39 +18,67 @@ const RISE: f32 = 2.0 * NEUTRAL;
 /// 1 / sqrt 2.
 const INV_SQRT_2: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// One cell: all that an update reads of it, side by side.
-#[derive(Debug, Clone, Copy)]
-struct Cell {
-    potential: f32,
-    cost: u8,
-    pending: bool,
-}
-
-const OUTSIDE: Cell = Cell { potential: UNREACHED, cost: OBSTACLE, pending: true };
-
 /// Potentials over a map.
 #[derive(Debug, Default)]
 pub(super) struct Wave {
     pub(super) width: usize,
     pub(super) height: usize,
-    cells: Vec<Cell>,
-    now: Vec<u32>,
-    next: Vec<u32>,
-    over: Vec<u32>,
+    /// Costs of the costmap, its border an obstacle.
+    costs: Vec<u8>,
+    /// The potential of each cell; below 0 while the cell waits in a list.
+    potentials: Vec<f32>,
+    now: List,
+    next: List,
+    over: List,
 }
 
-/// The planner's cost of each cost of a costmap: 50 + 0.8 c up to 253, obstacles 254.
-fn costs(allow_unknown: bool) -> [u8; 256] {
+/// Cells that wait. No cell waits twice, so a list as long as the map holds them all.
+#[derive(Debug, Default)]
+struct List {
+    places: Vec<u32>,
+    len: usize,
+}
+
+impl List {
+    /// Makes room for the cells of a map, and forgets those in it.
+    fn clear(&mut self, cells: usize) {
+        self.len = 0;
+        if self.places.len() <= cells {
+            self.places.resize(cells + 1, 0);
+        }
+    }
+
+    /// Adds those of a few places that are wanted. Each is written either way, because a jump that cannot be foreseen takes longer
+    /// than a write.
+    #[inline]
+    fn push<const N: usize>(&mut self, places: [usize; N], wanted: [bool; N]) {
+        let mut len = self.len;
+        for (place, wanted) in places.into_iter().zip(wanted) {
+            if let Some(slot) = self.places.get_mut(len) {
+                *slot = place as u32;
+                len += usize::from(wanted);
+            }
+        }
+        self.len = len;
+    }
+
+    fn waiting(&self) -> &[u32] {
+        self.places.get(..self.len).unwrap_or_default()
+    }
+}
+
+/// The planner's cost of each cost of a costmap: 50 + 0.8 c cut to a whole number, up to 253; infinite for obstacles.
+fn costs(allow_unknown: bool) -> [f32; 256] {
     std::array::from_fn(|cost| {
         let cost = u8::try_from(cost).unwrap_or(UNKNOWN);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 50 and 253")]
-        let dear = (f64::from(NEUTRAL) + FACTOR * f64::from(cost)).min(f64::from(DEAREST)) as u8;
+        #[expect(clippy::cast_possible_truncation, reason = "between 50 and 253")]
+        let dear = (f64::from(NEUTRAL) + FACTOR * f64::from(cost)).min(f64::from(DEAREST)).trunc() as f32;
         if cost < INSCRIBED {
             dear
         } else if cost == UNKNOWN && allow_unknown {
             DEAREST
         } else {
-            OBSTACLE
+            f32::INFINITY
         }
     })
 }
@@ -90,75 +118,74 @@ impl Bent for Towards {
 impl Wave {
     /// Spreads from the robot until the goal is reached.
     pub(super) fn spread(&mut self, map: &Costmap, from: (usize, usize), to: (usize, usize), params: &NavFnParams) {
-        self.load(map, params.allow_unknown);
-        (self.width, self.height) = (map.width(), map.height());
+        self.load(map);
         let place = |(column, row): (usize, usize)| row * map.width() + column;
         let (start, goal) = (place(from), place(to));
-        if let Some(cell) = self.cells.get_mut(start) {
-            cell.potential = 0.0;
-        }
-        for list in [&mut self.now, &mut self.next, &mut self.over] {
-            list.clear();
+        let costs = costs(params.allow_unknown);
+        if let Some(potential) = self.potentials.get_mut(start) {
+            *potential = 0.0;
         }
         let width = self.width;
-        for near in [start.wrapping_add(1), start.wrapping_sub(1), start.wrapping_sub(width), start + width] {
-            push(&mut self.cells, &mut self.now, near);
+        for near in [start.wrapping_sub(1), start + 1, start.wrapping_sub(width), start + width] {
+            let cost = self.costs.get(near).and_then(|cost| costs.get(usize::from(*cost)));
+            if let Some(potential) = self.potentials.get_mut(near).filter(|_| cost.is_some_and(|cost| cost.is_finite()))
+            {
+                *potential = -potential.abs();
+                self.now.push([near], [true]);
+            }
         }
         let cycles = (map.width() * map.height() / 20).max(map.width() + map.height());
         let threshold = f32::from(OBSTACLE);
         if params.use_astar {
             let towards = Towards(to.0 as f32, to.1 as f32);
             let threshold = threshold + towards.from(from.0 as f32, from.1 as f32);
-            self.run(&towards, goal, threshold, cycles);
+            self.run(&costs, &towards, goal, threshold, cycles);
         } else {
-            self.run(&Evenly, goal, threshold, cycles);
+            self.run(&costs, &Evenly, goal, threshold, cycles);
         }
     }
 
     /// Takes over the costs; the border is an obstacle.
-    fn load(&mut self, map: &Costmap, allow_unknown: bool) {
-        let costs = costs(allow_unknown);
-        let cell = |cost: &u8| {
-            let cost = costs.get(usize::from(*cost)).copied().unwrap_or(OBSTACLE);
-            Cell { potential: UNREACHED, cost, pending: false }
-        };
-        self.cells.clear();
-        self.cells.extend(map.costs().iter().map(cell));
+    fn load(&mut self, map: &Costmap) {
+        (self.width, self.height) = (map.width(), map.height());
+        self.costs.clear();
+        self.costs.extend_from_slice(map.costs());
+        self.potentials.clear();
+        self.potentials.resize(map.costs().len(), UNREACHED);
+        for list in [&mut self.now, &mut self.next, &mut self.over] {
+            list.clear(map.costs().len());
+        }
         let width = map.width().max(1);
-        let mut rows = self.cells.chunks_exact_mut(width);
+        let mut rows = self.costs.chunks_exact_mut(width);
         for row in [rows.next(), rows.next_back()].into_iter().flatten() {
-            row.iter_mut().for_each(|cell| cell.cost = OBSTACLE);
+            row.fill(OBSTACLE);
         }
         for row in rows {
             for end in [0, width - 1] {
-                if let Some(cell) = row.get_mut(end) {
-                    cell.cost = OBSTACLE;
+                if let Some(cost) = row.get_mut(end) {
+                    *cost = OBSTACLE;
                 }
             }
         }
     }
 
-    fn run(&mut self, bent: &impl Bent, goal: usize, mut threshold: f32, cycles: usize) {
+    fn run(&mut self, costs: &[f32; 256], bent: &impl Bent, goal: usize, mut threshold: f32, cycles: usize) {
         for _ in 0..cycles {
-            if self.now.is_empty() && self.next.is_empty() {
+            if self.now.len == 0 {
                 return;
             }
-            let Self { cells, now, next, over, width, .. } = self;
-            for place in now.iter() {
-                if let Some(cell) = cells.get_mut(*place as usize) {
-                    cell.pending = false;
-                }
+            let Self { costs: cells, potentials, now, next, over, width, .. } = self;
+            let floor = Floor { cells: cells.as_slice(), costs, width: *width };
+            for place in now.waiting() {
+                update(&floor, potentials, (next, over), *place as usize, threshold, bent);
             }
-            for place in now.iter() {
-                update(cells, next, over, *place as usize, *width, threshold, bent);
-            }
-            now.clear();
+            now.len = 0;
             std::mem::swap(now, next);
-            if now.is_empty() {
+            if now.len == 0 {
                 threshold += RISE;
                 std::mem::swap(now, over);
             }
-            if self.cells.get(goal).is_some_and(|cell| cell.potential < UNREACHED) {
+            if self.potentials.get(goal).is_some_and(|potential| potential.abs() < UNREACHED) {
                 return;
             }
         }
@@ -175,69 +202,60 @@ impl Wave {
 
     /// Potential of a cell by its place; that of an unreached one outside the map.
     pub(super) fn at(&self, place: usize) -> f32 {
-        self.cells.get(place).map_or(UNREACHED, |cell| cell.potential)
-    }
-
-    /// Whether ways may not lead through a cell.
-    #[cfg(test)]
-    pub(super) fn is_obstacle(&self, place: usize) -> bool {
-        self.cells.get(place).is_none_or(|cell| cell.cost >= OBSTACLE)
+        self.potentials.get(place).map_or(UNREACHED, |potential| potential.abs())
     }
 }
 
-fn push(cells: &mut [Cell], list: &mut Vec<u32>, place: usize) {
-    if let Some(cell) = cells.get_mut(place)
-        && !cell.pending
-        && cell.cost < OBSTACLE
-    {
-        cell.pending = true;
-        list.push(place as u32);
+/// What the wave spreads over.
+struct Floor<'a> {
+    cells: &'a [u8],
+    costs: &'a [f32; 256],
+    width: usize,
+}
+
+impl Floor<'_> {
+    #[inline]
+    fn cost(&self, place: usize) -> f32 {
+        self.cells.get(place).and_then(|cell| self.costs.get(usize::from(*cell))).copied().unwrap_or(f32::INFINITY)
     }
 }
 
 /// Reckons the potential of a cell anew from its neighbors', as of a plane wave; where it sank, the neighbors are next.
 #[inline]
 fn update(
-    cells: &mut [Cell],
-    next: &mut Vec<u32>,
-    over: &mut Vec<u32>,
+    floor: &Floor<'_>,
+    potentials: &mut [f32],
+    (next, over): (&mut List, &mut List),
     place: usize,
-    width: usize,
     threshold: f32,
     bent: &impl Bent,
 ) {
-    let of = |place: usize| cells.get(place).copied().unwrap_or(OUTSIDE);
-    let here = of(place);
-    if here.cost >= OBSTACLE {
+    let width = floor.width;
+    let places = [place.wrapping_sub(1), place + 1, place.wrapping_sub(width), place + width];
+    let waiting = places.map(|place| potentials.get(place).copied().unwrap_or(-UNREACHED));
+    let [left, right, below, above] = waiting.map(f32::abs);
+    let (across, up) = (left.min(right), below.min(above));
+    let (apart, least) = ((across - up).abs(), across.min(up));
+    let cost = floor.cost(place);
+    // A quadratic fit of the plane wave's arrival time; where the wave comes along an axis, one whole cell.
+    let share = apart / cost;
+    let fit = -0.2301 * share * share + 0.5307 * share + 0.7040;
+    let potential = least + cost * if share >= 1.0 { 1.0 } else { fit };
+    let Some(here) = potentials.get_mut(place) else { return };
+    let before = here.abs();
+    *here = before.min(potential);
+    if potential >= before {
         return;
-    }
-    let (left, right) = (of(place.wrapping_sub(1)), of(place + 1));
-    let (below, above) = (of(place.wrapping_sub(width)), of(place + width));
-    let across = left.potential.min(right.potential);
-    let up = below.potential.min(above.potential);
-    let apart = (across - up).abs();
-    let least = across.min(up);
-    let cost = f32::from(here.cost);
-    let potential = if apart >= cost {
-        least + cost
-    } else {
-        // A quadratic fit of the plane wave's arrival time.
-        let share = apart / cost;
-        least + cost * (-0.2301 * share * share + 0.5307 * share + 0.7040)
-    };
-    if potential >= here.potential {
-        return;
-    }
-    if let Some(cell) = cells.get_mut(place) {
-        cell.potential = potential;
     }
     let bent = potential + bent.left(place, width);
     let list = if bent < threshold { next } else { over };
-    let neighbors =
-        [(left, place.wrapping_sub(1)), (right, place + 1), (below, place.wrapping_sub(width)), (above, place + width)];
-    for (neighbor, place) in neighbors {
-        if neighbor.potential > bent + INV_SQRT_2 * f32::from(neighbor.cost) && !neighbor.pending {
-            push(cells, list, place);
+    let mut wanted = [false; 4];
+    for ((wanted, waiting), place) in wanted.iter_mut().zip(waiting).zip(places) {
+        // Neither an obstacle nor a cell that waits is taken: the one is infinitely dear, the other below 0.
+        *wanted = waiting > bent + INV_SQRT_2 * floor.cost(place);
+        if let Some(neighbor) = potentials.get_mut(place) {
+            *neighbor = if *wanted { -waiting } else { waiting };
         }
     }
+    list.push(places, wanted);
 }
