@@ -80,7 +80,7 @@ impl UpoSocialParams {
         self.covariance_front_height * (1.0 + self.speed_factor_multiplier * speed_mps)
     }
 
-    /// Cost at an offset from a person, m; `None` below the cutoff. Whoever stands has one round Gaussian; whoever walks has one
+    /// Cost at an offset from a person, m; `None` below the cutoff. Somebody who stands has one round Gaussian; somebody who walks has one
     /// in front, one behind, and with `use_passing` one to the right, of which the largest counts.
     #[must_use]
     pub fn cost(&self, person: &SeenPerson, offset: &Vector) -> Option<u8> {

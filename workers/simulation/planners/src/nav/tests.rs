@@ -87,7 +87,7 @@ fn people_are_seen_by_lidar_alone_unless_a_layer_is_about_them() {
         least
     };
     assert!(run(shipped(&task), true) > 0.05);
-    assert!(run(shipped(&task), false) < 0.0, "whom the lidar does not see it does not see");
+    assert!(run(shipped(&task), false) < 0.0, "somebody whom the lidar does not see is not seen");
     let mut oracle = shipped(&task);
     for costmap in [&mut oracle.global_costmap, &mut oracle.local_costmap] {
         costmap.layers.insert(1, LayerParams::OraclePeople(OraclePeopleParams::default()));

@@ -18,11 +18,50 @@ const RISE: f32 = 2.0 * NEUTRAL;
 /// 1 / sqrt 2.
 const INV_SQRT_2: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
+/// Side of a tile, cells: the potentials of one fill a page of memory, so that a front across many rows touches few pages.
+const TILE: usize = 32;
+const TILE_CELLS: usize = TILE * TILE;
+
+/// Cells in tiles: tile by tile, row by row in each.
+#[derive(Debug, Default, Clone, Copy)]
+struct Tiles {
+    /// Tiles from left to right.
+    across: usize,
+}
+
+impl Tiles {
+    const fn place(self, column: usize, row: usize) -> usize {
+        (row / TILE * self.across + column / TILE) * TILE_CELLS + row % TILE * TILE + column % TILE
+    }
+
+    /// Column and row, in 32 bits: they divide faster than 64.
+    const fn cell(self, place: usize) -> (u32, u32) {
+        const SIDE: u32 = TILE as u32;
+        let (tile, across, inside) = ((place / TILE_CELLS) as u32, self.across as u32, (place % TILE_CELLS) as u32);
+        (tile % across * SIDE + inside % SIDE, tile / across * SIDE + inside / SIDE)
+    }
+
+    /// The cells to the left, to the right, below and above. Beside the map is an obstacle, a place of no cell, or padding.
+    #[inline]
+    const fn neighbors(self, place: usize) -> [usize; 4] {
+        const ASIDE: usize = TILE_CELLS - (TILE - 1);
+        let (x, y) = (place % TILE, place / TILE % TILE);
+        let over = self.across * TILE_CELLS - (TILE - 1) * TILE;
+        [
+            place.wrapping_sub(if x == 0 { ASIDE } else { 1 }),
+            place + if x == TILE - 1 { ASIDE } else { 1 },
+            place.wrapping_sub(if y == 0 { over } else { TILE }),
+            place + if y == TILE - 1 { over } else { TILE },
+        ]
+    }
+}
+
 /// Potentials over a map.
 #[derive(Debug, Default)]
 pub(super) struct Wave {
     pub(super) width: usize,
     pub(super) height: usize,
+    tiles: Tiles,
     /// Costs of the costmap, its border an obstacle.
     costs: Vec<u8>,
     /// The potential of each cell; below 0 while the cell waits in a list.
@@ -85,14 +124,14 @@ fn costs(allow_unknown: bool) -> [f32; 256] {
 
 /// What the wave is bent by: the way that is left to the goal, or nothing.
 trait Bent {
-    fn left(&self, place: usize, width: usize) -> f32;
+    fn left(&self, place: usize, tiles: Tiles) -> f32;
 }
 
 /// Dijkstra.
 struct Evenly;
 
 impl Bent for Evenly {
-    fn left(&self, _place: usize, _width: usize) -> f32 {
+    fn left(&self, _place: usize, _tiles: Tiles) -> f32 {
         0.0
     }
 }
@@ -108,10 +147,9 @@ impl Towards {
 }
 
 impl Bent for Towards {
-    fn left(&self, place: usize, width: usize) -> f32 {
-        // 32 bits divide faster than 64.
-        let (place, width) = (place as u32, width as u32);
-        self.from((place % width) as f32, (place / width) as f32)
+    fn left(&self, place: usize, tiles: Tiles) -> f32 {
+        let (column, row) = tiles.cell(place);
+        self.from(column as f32, row as f32)
     }
 }
 
@@ -119,14 +157,13 @@ impl Wave {
     /// Spreads from the robot until the goal is reached.
     pub(super) fn spread(&mut self, map: &Costmap, from: (usize, usize), to: (usize, usize), params: &NavFnParams) {
         self.load(map);
-        let place = |(column, row): (usize, usize)| row * map.width() + column;
-        let (start, goal) = (place(from), place(to));
+        let tiles = self.tiles;
+        let (start, goal) = (tiles.place(from.0, from.1), tiles.place(to.0, to.1));
         let costs = costs(params.allow_unknown);
         if let Some(potential) = self.potentials.get_mut(start) {
             *potential = 0.0;
         }
-        let width = self.width;
-        for near in [start.wrapping_sub(1), start + 1, start.wrapping_sub(width), start + width] {
+        for near in tiles.neighbors(start) {
             let cost = self.costs.get(near).and_then(|cost| costs.get(usize::from(*cost)));
             if let Some(potential) = self.potentials.get_mut(near).filter(|_| cost.is_some_and(|cost| cost.is_finite()))
             {
@@ -145,27 +182,31 @@ impl Wave {
         }
     }
 
-    /// Takes over the costs; the border is an obstacle.
+    /// Takes over the costs; the border is an obstacle, and so is what fills up the last tiles.
     fn load(&mut self, map: &Costmap) {
-        (self.width, self.height) = (map.width(), map.height());
+        let (width, height) = (map.width(), map.height());
+        (self.width, self.height) = (width, height);
+        self.tiles = Tiles { across: width.div_ceil(TILE) };
+        let cells = self.tiles.across * height.div_ceil(TILE) * TILE_CELLS;
         self.costs.clear();
-        self.costs.extend_from_slice(map.costs());
-        self.potentials.clear();
-        self.potentials.resize(map.costs().len(), UNREACHED);
-        for list in [&mut self.now, &mut self.next, &mut self.over] {
-            list.clear(map.costs().len());
-        }
-        let width = map.width().max(1);
-        let mut rows = self.costs.chunks_exact_mut(width);
-        for row in [rows.next(), rows.next_back()].into_iter().flatten() {
-            row.fill(OBSTACLE);
-        }
-        for row in rows {
+        self.costs.resize(cells, OBSTACLE);
+        for (row, costs) in map.costs().chunks_exact(width.max(1)).enumerate().skip(1).take(height.saturating_sub(2)) {
+            for (tile, costs) in costs.chunks(TILE).enumerate() {
+                let start = self.tiles.place(tile * TILE, row);
+                if let Some(cells) = self.costs.get_mut(start..start + costs.len()) {
+                    cells.copy_from_slice(costs);
+                }
+            }
             for end in [0, width - 1] {
-                if let Some(cost) = row.get_mut(end) {
+                if let Some(cost) = self.costs.get_mut(self.tiles.place(end, row)) {
                     *cost = OBSTACLE;
                 }
             }
+        }
+        self.potentials.clear();
+        self.potentials.resize(cells, UNREACHED);
+        for list in [&mut self.now, &mut self.next, &mut self.over] {
+            list.clear(cells);
         }
     }
 
@@ -174,8 +215,8 @@ impl Wave {
             if self.now.len == 0 {
                 return;
             }
-            let Self { costs: cells, potentials, now, next, over, width, .. } = self;
-            let floor = Floor { cells: cells.as_slice(), costs, width: *width };
+            let Self { costs: cells, potentials, now, next, over, tiles, .. } = self;
+            let floor = Floor { cells: cells.as_slice(), costs, tiles: *tiles };
             for place in now.waiting() {
                 update(&floor, potentials, (next, over), *place as usize, threshold, bent);
             }
@@ -196,13 +237,17 @@ impl Wave {
     }
 
     pub(super) fn potential(&self, column: usize, row: usize) -> Option<f32> {
-        let potential = (column < self.width).then(|| self.at(row * self.width + column))?;
-        (potential < UNREACHED).then_some(potential)
+        if column >= self.width || row >= self.height {
+            return None;
+        }
+        let potential = self.potentials.get(self.tiles.place(column, row)).map(|potential| potential.abs());
+        potential.filter(|potential| *potential < UNREACHED)
     }
 
-    /// Potential of a cell by its place; that of an unreached one outside the map.
+    /// Potential of the cell at a place counted row by row; that of an unreached one outside the map.
     pub(super) fn at(&self, place: usize) -> f32 {
-        self.potentials.get(place).map_or(UNREACHED, |potential| potential.abs())
+        let width = self.width.max(1);
+        self.potential(place % width, place / width).unwrap_or(UNREACHED)
     }
 }
 
@@ -210,7 +255,7 @@ impl Wave {
 struct Floor<'a> {
     cells: &'a [u8],
     costs: &'a [f32; 256],
-    width: usize,
+    tiles: Tiles,
 }
 
 impl Floor<'_> {
@@ -230,8 +275,7 @@ fn update(
     threshold: f32,
     bent: &impl Bent,
 ) {
-    let width = floor.width;
-    let places = [place.wrapping_sub(1), place + 1, place.wrapping_sub(width), place + width];
+    let places = floor.tiles.neighbors(place);
     let waiting = places.map(|place| potentials.get(place).copied().unwrap_or(-UNREACHED));
     let [left, right, below, above] = waiting.map(f32::abs);
     let (across, up) = (left.min(right), below.min(above));
@@ -247,7 +291,7 @@ fn update(
     if potential >= before {
         return;
     }
-    let bent = potential + bent.left(place, width);
+    let bent = potential + bent.left(place, floor.tiles);
     let list = if bent < threshold { next } else { over };
     let mut wanted = [false; 4];
     for ((wanted, waiting), place) in wanted.iter_mut().zip(waiting).zip(places) {
