@@ -123,22 +123,21 @@ impl RegulatedPurePursuit {
     /// The speed after bends and obstacles, m/s.
     fn regulated(&self, curvature: f64, cost: u8) -> f64 {
         let params = &self.params;
-        let mut speed = params.desired_linear_vel;
+        let desired = params.desired_linear_vel;
+        let mut speed = desired;
         let radius = if curvature.abs() > 1e-9 { 1.0 / curvature.abs() } else { f64::INFINITY };
-        let mut least = speed;
         if radius < params.regulated_linear_scaling_min_radius {
-            least = least.min(speed * radius / params.regulated_linear_scaling_min_radius);
+            speed = speed.min(desired * radius / params.regulated_linear_scaling_min_radius);
         }
         if cost != FREE && cost != UNKNOWN {
             // The inflation layer's formula solved for the distance to the obstacle.
-            let share = (f64::from(cost.min(MOST)) / f64::from(MOST)).max(f64::MIN_POSITIVE);
+            let share = f64::from(cost.min(MOST)) / f64::from(MOST);
             let away_m = params.robot_radius - libm::log(share) / params.inflation_cost_scaling_factor;
             if away_m < params.cost_scaling_dist {
-                least = least.min(speed * params.cost_scaling_gain * away_m / params.cost_scaling_dist);
+                speed = speed.min(desired * params.cost_scaling_gain * away_m / params.cost_scaling_dist);
             }
         }
-        speed = least.max(params.regulated_linear_scaling_min_speed.min(speed));
-        speed
+        speed.max(params.regulated_linear_scaling_min_speed.min(desired))
     }
 
     /// Turns on the spot.
@@ -211,8 +210,10 @@ impl Controller for RegulatedPurePursuit {
         let (x, y) = (way.x * cos + way.y * sin, way.y * cos - way.x * sin);
         let carrot2 = x * x + y * y;
         let angle = libm::atan2(y, x);
-        let goal_m = (cycle.goal.point() - at).norm();
-        let twist = if goal_m < params.xy_goal_tolerance {
+        let end = cycle.plan.last().map_or(target, Pose::point);
+        // A way that only passes the goal leads on.
+        let near = |from: Point| (cycle.goal.point() - from).norm() < params.xy_goal_tolerance;
+        let twist = if near(at) && near(end) {
             self.turn(wrap_angle(cycle.goal.yaw - cycle.pose.yaw), cycle.speed.omega)
         } else if angle.abs() > params.rotate_to_heading_min_angle {
             self.turn(angle, cycle.speed.omega)
@@ -220,9 +221,9 @@ impl Controller for RegulatedPurePursuit {
             // Nearer than a millimeter there is no bend to speak of.
             let curvature = if carrot2 > 1e-6 { 2.0 * y / carrot2 } else { 0.0 };
             let mut speed = self.regulated(curvature, cycle.costmap.cost_at(&at));
-            let end = cycle.plan.last().map_or(goal_m, |end| (end.point() - at).norm());
-            if end < params.approach_velocity_scaling_dist {
-                let approach = params.desired_linear_vel * end / params.approach_velocity_scaling_dist;
+            let end_m = (end - at).norm();
+            if end_m < params.approach_velocity_scaling_dist {
+                let approach = params.desired_linear_vel * end_m / params.approach_velocity_scaling_dist;
                 speed = speed.min(approach.max(params.min_approach_linear_velocity));
             }
             speed *= cycle.speed_share.clamp(0.0, 1.0);

@@ -125,16 +125,22 @@ impl Costmap {
 
     /// The cells of a square round a point, cut at the edges of the map.
     #[must_use]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "held to the size of the map")]
     pub fn square(&self, center: &Point, reach_m: f64) -> Bounds {
+        self.rectangle(center, (reach_m, reach_m))
+    }
+
+    /// The same of a rectangle of this half width and half height, m.
+    #[must_use]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "held to the size of the map")]
+    pub fn rectangle(&self, center: &Point, (across_m, up_m): (f64, f64)) -> Bounds {
         let cell = |at: f64, size: usize| at.floor().clamp(0.0, size as f64) as usize;
         let column = |x: f64| cell((x - self.origin.x) / self.resolution_m, self.width);
         let row = |y: f64| cell((y - self.origin.y) / self.resolution_m, self.height);
         // The far edge is exclusive.
-        let (right, top) = (center.x + reach_m + self.resolution_m, center.y + reach_m + self.resolution_m);
+        let (right, top) = (center.x + across_m + self.resolution_m, center.y + up_m + self.resolution_m);
         let bounds = Bounds {
-            left: column(center.x - reach_m),
-            bottom: row(center.y - reach_m),
+            left: column(center.x - across_m),
+            bottom: row(center.y - up_m),
             right: column(right),
             top: row(top),
         };

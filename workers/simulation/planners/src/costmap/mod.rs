@@ -7,12 +7,13 @@
 //! ```
 //!
 //! Modules in reading order: the grid, the layers one over the other (layered), what is always there (walls), what the lidar
-//! sees (obstacle, raytrace), the room beside obstacles (inflation), people (people, proxemic, upo, nav2can), groups.
+//! sees (obstacle, raytrace), the room beside obstacles (inflation), people (people, lobe, proxemic, upo, nav2can), groups.
 
 mod grid;
 mod groups;
 mod inflation;
 mod layered;
+mod lobe;
 mod nav2can;
 mod obstacle;
 mod people;

@@ -31,9 +31,9 @@ impl Default for Nav2CanParams {
 const ZONES_M: [f64; 3] = [0.5, 1.0, 1.5];
 
 impl Nav2CanParams {
-    /// Value of the person's Gaussian so far to their side, m.
+    /// Exponent of the person's Gaussian so far to their side, m.
     fn at_side(&self, side_m: f64) -> f64 {
-        libm::exp(-side_m * side_m / (2.0 * self.sigma_side * self.sigma_side))
+        side_m * side_m / (2.0 * self.sigma_side * self.sigma_side)
     }
 
     /// Cost at an offset from a person, m; 0 outside their zones. With g the value of a Gaussian whose spread along their heading
@@ -47,14 +47,15 @@ impl Nav2CanParams {
     fn zone(&self, offset: &Vector, (sin, cos): (f64, f64), [inner, middle, outer]: [f64; 3]) -> u8 {
         let (x, y) = (offset.x * cos + offset.y * sin, offset.y * cos - offset.x * sin);
         let along = if x > 0.0 { self.sigma_front } else { self.sigma_back };
-        let value = libm::exp(-(x * x / (2.0 * along * along) + y * y / (2.0 * self.sigma_side * self.sigma_side)));
+        // Exponents are compared, and raised to a power only where that is the cost.
+        let exponent = x * x / (2.0 * along * along) + y * y / (2.0 * self.sigma_side * self.sigma_side);
         let most = f64::from(self.maxcost);
-        if value > inner {
+        if exponent < inner {
             self.maxcost
-        } else if value > middle {
-            cost_of(middle * most)
-        } else if value > outer {
-            cost_of(value * most)
+        } else if exponent < middle {
+            cost_of(libm::exp(-middle) * most)
+        } else if exponent < outer {
+            cost_of(libm::exp(-exponent) * most)
         } else {
             0
         }
@@ -103,7 +104,8 @@ impl Layer for Nav2CanLayer {
         for person in self.kept.people() {
             let heading = (libm::sin(person.yaw), libm::cos(person.yaw));
             let cost = |offset: &Vector| Some(self.params.zone(offset, heading, zones)).filter(|cost| *cost > 0);
-            raise(map, &here, (&person.at, self.params.reach_m()), cost);
+            let reach_m = self.params.reach_m();
+            raise(map, &here, (&person.at, (reach_m, reach_m)), cost);
         }
     }
 

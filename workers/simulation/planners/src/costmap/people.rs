@@ -53,10 +53,10 @@ impl Kept {
 pub(super) fn raise(
     map: &mut Costmap,
     bounds: &Bounds,
-    (center, reach_m): (&Point, f64),
+    (center, reach_m): (&Point, (f64, f64)),
     cost: impl Fn(&Vector) -> Option<u8>,
 ) {
-    let here = map.square(center, reach_m).meet(bounds);
+    let here = map.rectangle(center, reach_m).meet(bounds);
     if here.is_empty() {
         return;
     }
@@ -118,7 +118,7 @@ impl Layer for OraclePeople {
             // The cell that the center is in is part of even the smallest body.
             let least_m = map.resolution_m() / std::f64::consts::SQRT_2;
             let reach_m = radius_m.max(least_m);
-            raise(map, bounds, (&person.at, reach_m), |offset| (offset.norm() <= reach_m).then_some(LETHAL));
+            raise(map, bounds, (&person.at, (reach_m, reach_m)), |offset| (offset.norm() <= reach_m).then_some(LETHAL));
         }
     }
 

@@ -1,12 +1,11 @@
 //! The proxemic and the passing layer of Lu, Hershberger and Smart, "Layered costmaps for context-sensitive navigation" (2014).
 
-use std::f64::consts::PI;
-
 use socrates_model::{SeenPerson, Vector};
 
 use super::grid::{Bounds, Costmap};
 use super::layered::{Layer, Sensed};
-use super::people::{Kept, cost_of, raise};
+use super::lobe::{Half, Height, Lobe};
+use super::people::Kept;
 
 /// Turn from the way a person comes from to the axis of the passing layer, rad: their right-hand side.
 const SIDE_RAD: f64 = 1.51;
@@ -34,24 +33,16 @@ impl Default for ProxemicParams {
     }
 }
 
-/// Distance at which a Gaussian of this variance falls to the cutoff, m.
-pub(super) fn reach_m(amplitude: f64, cutoff: f64, variance: f64) -> f64 {
-    if cutoff <= 0.0 || amplitude <= cutoff {
-        return 0.0;
-    }
-    libm::sqrt(-2.0 * variance * libm::log(cutoff / amplitude))
-}
-
 /// Unit vector of a person's walk, along x if they stand.
 pub(super) fn walk(velocity: &Vector) -> Vector {
     let speed = velocity.norm();
     if speed > 0.0 { velocity / speed } else { Vector::new(1.0, 0.0) }
 }
 
-/// Value at an offset of a Gaussian with these variances along and across an axis, 1 in the middle.
-pub(super) fn gauss(offset: &Vector, axis: &Vector, (along, across): (f64, f64)) -> f64 {
-    let (x, y) = (offset.dot(axis), axis.perp(offset));
-    libm::exp(-(x * x / (2.0 * along) + y * y / (2.0 * across)))
+/// A vector turned counter-clockwise, rad.
+pub(super) fn turned(vector: &Vector, angle: f64) -> Vector {
+    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+    Vector::new(vector.x * cos - vector.y * sin, vector.x * sin + vector.y * cos)
 }
 
 impl ProxemicParams {
@@ -59,29 +50,21 @@ impl ProxemicParams {
     /// vx = `covariance` (1 + `factor` v) in front, `covariance` behind; `None` below the cutoff.
     #[must_use]
     pub fn cost(&self, person: &SeenPerson, offset: &Vector) -> Option<u8> {
+        self.lobes(person).flatten().filter_map(|lobe| lobe.cost(self.height(), offset)).max()
+    }
+
+    const fn height(&self) -> Height {
+        Height { amplitude: self.amplitude, cutoff: self.cutoff }
+    }
+
+    fn lobes(&self, person: &SeenPerson) -> impl Iterator<Item = Option<Lobe>> + use<> {
         let long = self.covariance * (1.0 + self.factor * person.velocity.norm());
         let ahead = walk(&person.velocity);
         let axis = if self.passing { turned(&-ahead, SIDE_RAD) } else { ahead };
-        let front = offset.dot(&axis) > 0.0;
-        if self.passing && !front {
-            return None;
-        }
-        let along = if front { long } else { self.covariance };
-        let value = self.amplitude * gauss(offset, &axis, (along, self.covariance));
-        (value >= self.cutoff).then(|| cost_of(value))
+        let front = Lobe { axis, variances: (long, self.covariance), half: Half::Front };
+        let rear = Lobe { axis, variances: (self.covariance, self.covariance), half: Half::Rear };
+        [Some(front), (!self.passing).then_some(rear)].into_iter()
     }
-
-    fn reach_m(&self, person: &SeenPerson) -> f64 {
-        let long = self.covariance * (1.0 + self.factor * person.velocity.norm());
-        reach_m(self.amplitude, self.cutoff, long.max(self.covariance))
-    }
-}
-
-/// A vector turned counter-clockwise, rad.
-pub(super) fn turned(vector: &Vector, angle: f64) -> Vector {
-    debug_assert!(angle.abs() <= PI, "a turn of at most half a circle");
-    let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-    Vector::new(vector.x * cos - vector.y * sin, vector.x * sin + vector.y * cos)
 }
 
 /// The proxemic layer.
@@ -104,15 +87,18 @@ impl Layer for ProxemicLayer {
         self.kept.see(sensed);
         let mut now = Bounds::EMPTY;
         for person in self.kept.people() {
-            now.join(&map.square(&person.at, self.params.reach_m(person)));
+            for lobe in self.params.lobes(person).flatten() {
+                now.join(&lobe.bounds(map, &person.at, self.params.height()));
+            }
         }
         self.kept.widen(now, bounds);
     }
 
     fn write(&mut self, map: &mut Costmap, bounds: &Bounds, _sensed: &Sensed<'_>) {
         for person in self.kept.people() {
-            let reach_m = self.params.reach_m(person);
-            raise(map, bounds, (&person.at, reach_m), |offset| self.params.cost(person, offset));
+            for lobe in self.params.lobes(person).flatten() {
+                lobe.raise(map, bounds, &person.at, self.params.height());
+            }
         }
     }
 

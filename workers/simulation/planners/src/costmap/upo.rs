@@ -6,8 +6,9 @@ use socrates_model::{SeenPerson, Vector};
 
 use super::grid::{Bounds, Costmap, MOST};
 use super::layered::{Layer, Sensed};
-use super::people::{Kept, cost_of, raise};
-use super::proxemic::{gauss, reach_m, turned, walk};
+use super::lobe::{Half, Height, Lobe};
+use super::people::Kept;
+use super::proxemic::{turned, walk};
 
 /// Somebody slower than this stands, m/s.
 const STILL_MPS: f64 = 0.1;
@@ -84,45 +85,30 @@ impl UpoSocialParams {
     /// in front, one behind, and with `use_passing` one to the right, of which the largest counts.
     #[must_use]
     pub fn cost(&self, person: &SeenPerson, offset: &Vector) -> Option<u8> {
-        let speed = person.velocity.norm();
-        let ahead = walk(&person.velocity);
-        let value = if speed < STILL_MPS {
-            gauss(offset, &ahead, (self.covariance_when_still, self.covariance_when_still))
-        } else {
-            let own = if offset.dot(&ahead) > 0.0 {
-                (self.front(speed), self.covariance_front_width)
-            } else {
-                (self.covariance_rear_height, self.covariance_rear_width)
-            };
-            let right = turned(&ahead, -FRAC_PI_2);
-            let beside = if self.use_passing && offset.dot(&right) > 0.0 {
-                gauss(offset, &right, (self.covariance_right_height, self.covariance_right_width))
-            } else {
-                0.0
-            };
-            gauss(offset, &ahead, own).max(beside)
-        };
-        let value = self.amplitude * value;
-        (value >= self.cutoff).then(|| cost_of(value))
+        self.lobes(person).flatten().filter_map(|lobe| lobe.cost(self.height(), offset)).max()
     }
 
-    fn reach_m(&self, person: &SeenPerson) -> f64 {
+    const fn height(&self) -> Height {
+        Height { amplitude: self.amplitude, cutoff: self.cutoff }
+    }
+
+    fn lobes(&self, person: &SeenPerson) -> impl Iterator<Item = Option<Lobe>> + use<> {
         let speed = person.velocity.norm();
-        let widest = if speed < STILL_MPS {
-            self.covariance_when_still
-        } else {
-            [
-                self.front(speed),
-                self.covariance_front_width,
-                self.covariance_rear_height,
-                self.covariance_rear_width,
-                self.covariance_right_height,
-                self.covariance_right_width,
-            ]
-            .into_iter()
-            .fold(0.0, f64::max)
-        };
-        reach_m(self.amplitude, self.cutoff, widest)
+        let axis = walk(&person.velocity);
+        if speed < STILL_MPS {
+            let variances = (self.covariance_when_still, self.covariance_when_still);
+            return [Some(Lobe { axis, variances, half: Half::Both }), None, None].into_iter();
+        }
+        let front = (self.front(speed), self.covariance_front_width);
+        let rear = (self.covariance_rear_height, self.covariance_rear_width);
+        let right = (self.covariance_right_height, self.covariance_right_width);
+        let side = Lobe { axis: turned(&axis, -FRAC_PI_2), variances: right, half: Half::Front };
+        [
+            Some(Lobe { axis, variances: front, half: Half::Front }),
+            Some(Lobe { axis, variances: rear, half: Half::Rear }),
+            self.use_passing.then_some(side),
+        ]
+        .into_iter()
     }
 }
 
@@ -146,15 +132,18 @@ impl Layer for UpoSocialLayer {
         self.kept.see(sensed);
         let mut now = Bounds::EMPTY;
         for person in self.kept.people() {
-            now.join(&map.square(&person.at, self.params.reach_m(person)));
+            for lobe in self.params.lobes(person).flatten() {
+                now.join(&lobe.bounds(map, &person.at, self.params.height()));
+            }
         }
         self.kept.widen(now, bounds);
     }
 
     fn write(&mut self, map: &mut Costmap, bounds: &Bounds, _sensed: &Sensed<'_>) {
         for person in self.kept.people() {
-            let reach_m = self.params.reach_m(person);
-            raise(map, bounds, (&person.at, reach_m), |offset| self.params.cost(person, offset));
+            for lobe in self.params.lobes(person).flatten() {
+                lobe.raise(map, bounds, &person.at, self.params.height());
+            }
         }
     }
 
