@@ -18,10 +18,12 @@ pub(super) enum Half {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lobe {
     /// Unit vector.
-    pub(super) axis: Vector,
+    axis: Vector,
     /// Variances along and across the axis, m².
-    pub(super) variances: (f64, f64),
-    pub(super) half: Half,
+    variances: (f64, f64),
+    /// Halves of their inverses, 1/m²: a division takes as long as all the rest of an exponent.
+    falls: (f64, f64),
+    half: Half,
 }
 
 /// Height of a lobe's middle, and below which height it ends.
@@ -32,19 +34,72 @@ pub(super) struct Height {
 }
 
 impl Height {
-    /// The exponent at which a lobe ends: amplitude e^-x = cutoff. Nothing is left of one that is not above its cutoff.
+    /// The exponent at which a lobe ends: amplitude e^-x = cutoff. Below 0 where none of it is above.
     fn end(self) -> f64 {
         // A cost below 1 is none.
         let cutoff = self.cutoff.max(1.0);
-        if self.amplitude <= cutoff { 0.0 } else { libm::log(self.amplitude / cutoff) }
+        if self.amplitude < cutoff { -1.0 } else { libm::log(self.amplitude / cutoff) }
+    }
+
+    /// Cost where a Gaussian has this exponent; `None` below the cutoff.
+    fn cost(self, exponent: f64) -> Option<u8> {
+        let value = self.amplitude * libm::exp(-exponent);
+        (value >= self.cutoff).then(|| cost_of(value))
+    }
+}
+
+/// Costs by exponents, looked up: a power takes ten times as long.
+#[derive(Debug)]
+pub(super) struct Fall {
+    height: Height,
+    end: f64,
+    /// For each cost the largest exponent that has it.
+    last: Vec<f64>,
+    /// Cost where each of equal steps of the exponent begins.
+    begins: Vec<u8>,
+    steps_per_one: f64,
+}
+
+impl Fall {
+    pub(super) fn new(height: Height) -> Self {
+        /// Steps so short that a cost hardly falls by one in each.
+        const STEPS: usize = 4096;
+        let end = height.end();
+        let last = (0..=255_u8).map(|cost| libm::log(height.amplitude / f64::from(cost.max(1))));
+        let step = end.max(0.0) / STEPS as f64;
+        let begins = (0..=STEPS).map(|count| cost_of(height.amplitude * libm::exp(-(count as f64 * step))));
+        let steps_per_one = if end > 0.0 { STEPS as f64 / end } else { 0.0 };
+        Self { height, end, last: last.collect(), begins: begins.collect(), steps_per_one }
+    }
+
+    /// Cost where a Gaussian has this exponent; `None` below the cutoff.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the number of steps")]
+    pub(super) fn cost(&self, exponent: f64) -> Option<u8> {
+        if exponent > self.end {
+            return None;
+        }
+        let mut cost = self.begins.get((exponent * self.steps_per_one) as usize).copied()?;
+        while cost > 1 && self.last.get(usize::from(cost)).is_some_and(|last| exponent > *last) {
+            cost -= 1;
+        }
+        Some(cost)
+    }
+
+    pub(super) const fn height(&self) -> Height {
+        self.height
     }
 }
 
 impl Lobe {
+    /// A lobe along a unit vector, with the variances along and across it, m².
+    pub(super) fn new(axis: Vector, variances: (f64, f64), half: Half) -> Self {
+        Self { axis, variances, falls: (0.5 / variances.0, 0.5 / variances.1), half }
+    }
+
     /// Half width and half height of the box along the map's axes that holds the lobe, m.
     pub(super) fn reach_m(&self, height: Height) -> (f64, f64) {
         let (along, across) = self.variances;
-        let end = 2.0 * height.end();
+        let end = 2.0 * height.end().max(0.0);
         let reach = |on: f64, off: f64| libm::sqrt(end * (along * on * on + across * off * off));
         (reach(self.axis.x, self.axis.y), reach(self.axis.y, self.axis.x))
     }
@@ -57,25 +112,13 @@ impl Lobe {
             Half::Front => x > 0.0,
             Half::Rear => x <= 0.0,
         };
-        let (along, across) = self.variances;
-        if counts { x * x / (2.0 * along) + y * y / (2.0 * across) } else { f64::INFINITY }
+        let (along, across) = self.falls;
+        if counts { x * x * along + y * y * across } else { f64::INFINITY }
     }
 
     /// Cost at an offset from the middle, m; `None` below the cutoff.
     pub(super) fn cost(&self, height: Height, offset: &Vector) -> Option<u8> {
-        self.cost_within(height, height.end(), offset)
-    }
-
-    fn cost_within(&self, height: Height, end: f64, offset: &Vector) -> Option<u8> {
-        /// The last bit at the end is the power's own.
-        const SLACK: f64 = 1e-9;
-        let exponent = self.exponent(offset);
-        // Far out nothing has to be raised to a power.
-        if exponent > end + SLACK {
-            return None;
-        }
-        let value = height.amplitude * libm::exp(-exponent);
-        (value >= height.cutoff).then(|| cost_of(value))
+        height.cost(self.exponent(offset))
     }
 
     /// The cells that the lobe may raise.
@@ -84,8 +127,27 @@ impl Lobe {
     }
 
     /// Raises the cells under the lobe.
-    pub(super) fn raise(&self, map: &mut Costmap, bounds: &Bounds, center: &Point, height: Height) {
-        let end = height.end();
-        raise(map, bounds, (center, self.reach_m(height)), |offset| self.cost_within(height, end, offset));
+    pub(super) fn raise(&self, map: &mut Costmap, bounds: &Bounds, center: &Point, fall: &Fall) {
+        let reach_m = self.reach_m(fall.height());
+        raise(map, bounds, (center, reach_m), |offset| fall.cost(self.exponent(offset)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cost_looked_up_is_the_cost_reckoned() {
+        for (amplitude, cutoff) in [(252.0, 10.0), (77.0, 10.0), (252.0, 0.0), (30.5, 5.0), (9.0, 10.0), (400.0, 3.0)] {
+            let height = Height { amplitude, cutoff };
+            let fall = Fall::new(height);
+            for step in 0..80_000 {
+                // Irrational steps, so that none is at the very edge of a cost.
+                let exponent = f64::from(step) * 1e-4 * std::f64::consts::FRAC_1_SQRT_2;
+                let reckoned = height.cost(exponent).filter(|cost| *cost > 0);
+                assert_eq!(fall.cost(exponent), reckoned, "{amplitude}, {cutoff}: at {exponent}");
+            }
+        }
     }
 }

@@ -4,6 +4,7 @@ use socrates_model::{Point, SeenPerson, Vector};
 
 use super::grid::{Bounds, Costmap, MOST};
 use super::layered::{Layer, Sensed};
+use super::lobe::{Fall, Height};
 use super::people::{Kept, cost_of, raise};
 
 /// Parameters of the layer.
@@ -41,21 +42,28 @@ impl Nav2CanParams {
     /// value 1 m to the side times `maxcost` up to there, g times `maxcost` up to 1.5 m, all cut to whole numbers.
     #[must_use]
     pub fn cost(&self, person: &SeenPerson, offset: &Vector) -> u8 {
-        self.zone(offset, (libm::sin(person.yaw), libm::cos(person.yaw)), ZONES_M.map(|side_m| self.at_side(side_m)))
+        let zones = ZONES_M.map(|side_m| self.at_side(side_m));
+        let power = |exponent: f64| cost_of(libm::exp(-exponent) * f64::from(self.maxcost));
+        self.zone(offset, (libm::sin(person.yaw), libm::cos(person.yaw)), zones, power)
     }
 
-    fn zone(&self, offset: &Vector, (sin, cos): (f64, f64), [inner, middle, outer]: [f64; 3]) -> u8 {
+    fn zone(
+        &self,
+        offset: &Vector,
+        (sin, cos): (f64, f64),
+        [inner, middle, outer]: [f64; 3],
+        power: impl Fn(f64) -> u8,
+    ) -> u8 {
         let (x, y) = (offset.x * cos + offset.y * sin, offset.y * cos - offset.x * sin);
-        let along = if x > 0.0 { self.sigma_front } else { self.sigma_back };
-        // Exponents are compared, and raised to a power only where that is the cost.
-        let exponent = x * x / (2.0 * along * along) + y * y / (2.0 * self.sigma_side * self.sigma_side);
-        let most = f64::from(self.maxcost);
+        let halved = |sigma: f64| 0.5 / (sigma * sigma);
+        let along = if x > 0.0 { halved(self.sigma_front) } else { halved(self.sigma_back) };
+        let exponent = x * x * along + y * y * halved(self.sigma_side);
         if exponent < inner {
             self.maxcost
         } else if exponent < middle {
-            cost_of(libm::exp(-middle) * most)
+            power(middle)
         } else if exponent < outer {
-            cost_of(libm::exp(-exponent) * most)
+            power(exponent)
         } else {
             0
         }
@@ -72,13 +80,15 @@ impl Nav2CanParams {
 pub struct Nav2CanLayer {
     params: Nav2CanParams,
     kept: Kept,
+    fall: Fall,
 }
 
 impl Nav2CanLayer {
     /// The layer.
     #[must_use]
     pub fn new(params: &Nav2CanParams) -> Self {
-        Self { params: *params, kept: Kept::new(0.0) }
+        let height = Height { amplitude: f64::from(params.maxcost), cutoff: 1.0 };
+        Self { params: *params, kept: Kept::new(0.0), fall: Fall::new(height) }
     }
 
     /// The cells of the social map, round the robot.
@@ -101,9 +111,10 @@ impl Layer for Nav2CanLayer {
     fn write(&mut self, map: &mut Costmap, bounds: &Bounds, sensed: &Sensed<'_>) {
         let here = self.window(map, &sensed.pose.point()).meet(bounds);
         let zones = ZONES_M.map(|side_m| self.params.at_side(side_m));
+        let power = |exponent: f64| self.fall.cost(exponent).unwrap_or(0);
         for person in self.kept.people() {
             let heading = (libm::sin(person.yaw), libm::cos(person.yaw));
-            let cost = |offset: &Vector| Some(self.params.zone(offset, heading, zones)).filter(|cost| *cost > 0);
+            let cost = |offset: &Vector| Some(self.params.zone(offset, heading, zones, power)).filter(|cost| *cost > 0);
             let reach_m = self.params.reach_m();
             raise(map, &here, (&person.at, (reach_m, reach_m)), cost);
         }

@@ -4,7 +4,7 @@ use socrates_model::{SeenPerson, Vector};
 
 use super::grid::{Bounds, Costmap};
 use super::layered::{Layer, Sensed};
-use super::lobe::{Half, Height, Lobe};
+use super::lobe::{Fall, Half, Height, Lobe};
 use super::people::Kept;
 
 /// Turn from the way a person comes from to the axis of the passing layer, rad: their right-hand side.
@@ -61,8 +61,8 @@ impl ProxemicParams {
         let long = self.covariance * (1.0 + self.factor * person.velocity.norm());
         let ahead = walk(&person.velocity);
         let axis = if self.passing { turned(&-ahead, SIDE_RAD) } else { ahead };
-        let front = Lobe { axis, variances: (long, self.covariance), half: Half::Front };
-        let rear = Lobe { axis, variances: (self.covariance, self.covariance), half: Half::Rear };
+        let front = Lobe::new(axis, (long, self.covariance), Half::Front);
+        let rear = Lobe::new(axis, (self.covariance, self.covariance), Half::Rear);
         [Some(front), (!self.passing).then_some(rear)].into_iter()
     }
 }
@@ -72,13 +72,14 @@ impl ProxemicParams {
 pub struct ProxemicLayer {
     params: ProxemicParams,
     kept: Kept,
+    fall: Fall,
 }
 
 impl ProxemicLayer {
     /// The layer.
     #[must_use]
     pub fn new(params: &ProxemicParams) -> Self {
-        Self { params: *params, kept: Kept::new(params.keep_time) }
+        Self { params: *params, kept: Kept::new(params.keep_time), fall: Fall::new(params.height()) }
     }
 }
 
@@ -97,7 +98,7 @@ impl Layer for ProxemicLayer {
     fn write(&mut self, map: &mut Costmap, bounds: &Bounds, _sensed: &Sensed<'_>) {
         for person in self.kept.people() {
             for lobe in self.params.lobes(person).flatten() {
-                lobe.raise(map, bounds, &person.at, self.params.height());
+                lobe.raise(map, bounds, &person.at, &self.fall);
             }
         }
     }

@@ -6,7 +6,7 @@ use socrates_model::{SeenPerson, Vector};
 
 use super::grid::{Bounds, Costmap, MOST};
 use super::layered::{Layer, Sensed};
-use super::lobe::{Half, Height, Lobe};
+use super::lobe::{Fall, Half, Height, Lobe};
 use super::people::Kept;
 use super::proxemic::{turned, walk};
 
@@ -97,15 +97,15 @@ impl UpoSocialParams {
         let axis = walk(&person.velocity);
         if speed < STILL_MPS {
             let variances = (self.covariance_when_still, self.covariance_when_still);
-            return [Some(Lobe { axis, variances, half: Half::Both }), None, None].into_iter();
+            return [Some(Lobe::new(axis, variances, Half::Both)), None, None].into_iter();
         }
         let front = (self.front(speed), self.covariance_front_width);
         let rear = (self.covariance_rear_height, self.covariance_rear_width);
         let right = (self.covariance_right_height, self.covariance_right_width);
-        let side = Lobe { axis: turned(&axis, -FRAC_PI_2), variances: right, half: Half::Front };
+        let side = Lobe::new(turned(&axis, -FRAC_PI_2), right, Half::Front);
         [
-            Some(Lobe { axis, variances: front, half: Half::Front }),
-            Some(Lobe { axis, variances: rear, half: Half::Rear }),
+            Some(Lobe::new(axis, front, Half::Front)),
+            Some(Lobe::new(axis, rear, Half::Rear)),
             self.use_passing.then_some(side),
         ]
         .into_iter()
@@ -117,13 +117,14 @@ impl UpoSocialParams {
 pub struct UpoSocialLayer {
     params: UpoSocialParams,
     kept: Kept,
+    fall: Fall,
 }
 
 impl UpoSocialLayer {
     /// The layer.
     #[must_use]
     pub fn new(params: &UpoSocialParams) -> Self {
-        Self { params: *params, kept: Kept::new(params.keep_time) }
+        Self { params: *params, kept: Kept::new(params.keep_time), fall: Fall::new(params.height()) }
     }
 }
 
@@ -142,7 +143,7 @@ impl Layer for UpoSocialLayer {
     fn write(&mut self, map: &mut Costmap, bounds: &Bounds, _sensed: &Sensed<'_>) {
         for person in self.kept.people() {
             for lobe in self.params.lobes(person).flatten() {
-                lobe.raise(map, bounds, &person.at, self.params.height());
+                lobe.raise(map, bounds, &person.at, &self.fall);
             }
         }
     }
