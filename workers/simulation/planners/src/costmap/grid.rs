@@ -1,6 +1,6 @@
 //! One grid of costs.
 
-use socrates_model::Point;
+use socrates_model::{Point, Vector};
 
 /// Nothing is there.
 pub const FREE: u8 = 0;
@@ -126,24 +126,20 @@ impl Costmap {
     /// The cells of a square round a point, cut at the edges of the map.
     #[must_use]
     pub fn square(&self, center: &Point, reach_m: f64) -> Bounds {
-        self.rectangle(center, (reach_m, reach_m))
+        let reach = Vector::new(reach_m, reach_m);
+        self.rectangle(&(center - reach), &(center + reach))
     }
 
-    /// The same of a rectangle of this half width and half height, m.
+    /// The cells of a rectangle between two corners, cut at the edges of the map.
     #[must_use]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "held to the size of the map")]
-    pub fn rectangle(&self, center: &Point, (across_m, up_m): (f64, f64)) -> Bounds {
+    pub fn rectangle(&self, least: &Point, most: &Point) -> Bounds {
         let cell = |at: f64, size: usize| at.floor().clamp(0.0, size as f64) as usize;
         let column = |x: f64| cell((x - self.origin.x) / self.resolution_m, self.width);
         let row = |y: f64| cell((y - self.origin.y) / self.resolution_m, self.height);
         // The far edge is exclusive.
-        let (right, top) = (center.x + across_m + self.resolution_m, center.y + up_m + self.resolution_m);
-        let bounds = Bounds {
-            left: column(center.x - across_m),
-            bottom: row(center.y - up_m),
-            right: column(right),
-            top: row(top),
-        };
+        let (right, top) = (column(most.x + self.resolution_m), row(most.y + self.resolution_m));
+        let bounds = Bounds { left: column(least.x), bottom: row(least.y), right, top };
         if bounds.is_empty() { Bounds::EMPTY } else { bounds }
     }
 

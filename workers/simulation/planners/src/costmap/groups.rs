@@ -253,7 +253,8 @@ impl Layer for GroupLayer {
         let cost = self.params.interaction_cost;
         for ellipse in self.ellipses() {
             let reach_m = ellipse.half_m.0.max(ellipse.half_m.1);
-            raise(map, bounds, (&ellipse.center, (reach_m, reach_m)), |offset| ellipse.covers(offset).then_some(cost));
+            let here = map.square(&ellipse.center, reach_m).meet(bounds);
+            raise(map, &here, &ellipse.center, |offset| ellipse.covers(offset).then_some(cost));
         }
     }
 

@@ -96,12 +96,18 @@ impl Lobe {
         Self { axis, variances, falls: (0.5 / variances.0, 0.5 / variances.1), half }
     }
 
-    /// Half width and half height of the box along the map's axes that holds the lobe, m.
-    pub(super) fn reach_m(&self, height: Height) -> (f64, f64) {
+    /// How far the lobe reaches along a unit vector, m.
+    fn reach_m(&self, towards: &Vector, height: Height) -> f64 {
         let (along, across) = self.variances;
-        let end = 2.0 * height.end().max(0.0);
-        let reach = |on: f64, off: f64| libm::sqrt(end * (along * on * on + across * off * off));
-        (reach(self.axis.x, self.axis.y), reach(self.axis.y, self.axis.x))
+        let (on, off) = (towards.dot(&self.axis), towards.perp(&self.axis));
+        let away = match self.half {
+            Half::Both => false,
+            Half::Front => on < 0.0,
+            Half::Rear => on > 0.0,
+        };
+        // Away from its side a half ends at the line through its middle.
+        let square = if away { across * off * off } else { along * on * on + across * off * off };
+        libm::sqrt(2.0 * height.end().max(0.0) * square)
     }
 
     /// The exponent at an offset from the middle, m; infinite on the half that does not count.
@@ -123,13 +129,16 @@ impl Lobe {
 
     /// The cells that the lobe may raise.
     pub(super) fn bounds(&self, map: &Costmap, center: &Point, height: Height) -> Bounds {
-        map.rectangle(center, self.reach_m(height))
+        let reach = |x: f64, y: f64| self.reach_m(&Vector::new(x, y), height);
+        let least = center - Vector::new(reach(-1.0, 0.0), reach(0.0, -1.0));
+        let most = center + Vector::new(reach(1.0, 0.0), reach(0.0, 1.0));
+        map.rectangle(&least, &most)
     }
 
     /// Raises the cells under the lobe.
     pub(super) fn raise(&self, map: &mut Costmap, bounds: &Bounds, center: &Point, fall: &Fall) {
-        let reach_m = self.reach_m(fall.height());
-        raise(map, bounds, (center, reach_m), |offset| fall.cost(self.exponent(offset)));
+        let here = self.bounds(map, center, fall.height()).meet(bounds);
+        raise(map, &here, center, |offset| fall.cost(self.exponent(offset)));
     }
 }
 

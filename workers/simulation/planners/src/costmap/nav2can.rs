@@ -115,8 +115,8 @@ impl Layer for Nav2CanLayer {
         for person in self.kept.people() {
             let heading = (libm::sin(person.yaw), libm::cos(person.yaw));
             let cost = |offset: &Vector| Some(self.params.zone(offset, heading, zones, power)).filter(|cost| *cost > 0);
-            let reach_m = self.params.reach_m();
-            raise(map, &here, (&person.at, (reach_m, reach_m)), cost);
+            let zones = map.square(&person.at, self.params.reach_m()).meet(&here);
+            raise(map, &zones, &person.at, cost);
         }
     }
 

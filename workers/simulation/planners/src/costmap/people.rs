@@ -49,20 +49,14 @@ impl Kept {
     }
 }
 
-/// Raises cells near a person to a cost that hangs on the offset of the cell's center from them, m. Unknown cells stay so.
-pub(super) fn raise(
-    map: &mut Costmap,
-    bounds: &Bounds,
-    (center, reach_m): (&Point, (f64, f64)),
-    cost: impl Fn(&Vector) -> Option<u8>,
-) {
-    let here = map.rectangle(center, reach_m).meet(bounds);
+/// Raises cells of a box to a cost that hangs on the offset of the cell's center from a point, m. Unknown cells stay so.
+pub(super) fn raise(map: &mut Costmap, here: &Bounds, center: &Point, cost: impl Fn(&Vector) -> Option<u8>) {
     if here.is_empty() {
         return;
     }
     let corner = map.center(here.left, here.bottom) - center;
     let cell_m = map.resolution_m();
-    for (up, row) in map.rows_mut(&here).enumerate() {
+    for (up, row) in map.rows_mut(here).enumerate() {
         for (along, cell) in row.iter_mut().enumerate() {
             let offset = corner + Vector::new(along as f64 * cell_m, up as f64 * cell_m);
             if let Some(cost) = cost(&offset)
@@ -118,7 +112,8 @@ impl Layer for OraclePeople {
             // The cell that the center is in is part of even the smallest body.
             let least_m = map.resolution_m() / std::f64::consts::SQRT_2;
             let reach_m = radius_m.max(least_m);
-            raise(map, bounds, (&person.at, (reach_m, reach_m)), |offset| (offset.norm() <= reach_m).then_some(LETHAL));
+            let here = map.square(&person.at, reach_m).meet(bounds);
+            raise(map, &here, &person.at, |offset| (offset.norm() <= reach_m).then_some(LETHAL));
         }
     }
 

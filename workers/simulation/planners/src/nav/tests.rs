@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use socrates_maps::DistanceField;
-use socrates_model::{Cell, Command, Cues, Observation, Point, Pose, RobotDriver as _, SeenPerson, SimTime};
+use socrates_model::{Cell, Command, Cues, HumanId, Observation, Point, Pose, RobotDriver as _, SeenPerson, SimTime};
 
 use super::*;
 use crate::Mission;
@@ -253,5 +253,26 @@ fn among_posts_it_reaches_its_goal_and_touches_none() {
         let errors = stack.errors();
         assert!((pose.point() - Point::new(9.0, 9.0)).norm() < 0.3, "seed {seed}: ends at {pose:?}, {errors:?}");
         assert!(least > 0.0, "seed {seed}: {least} m from a post");
+    }
+}
+
+#[test]
+fn among_people_who_walk_up_and_down_it_reaches_its_goal() {
+    let task = mission(vec![]);
+    for seed in 0..4 {
+        let mut chance = Chance::new(seed);
+        let mut walker = || (20.0 * chance.share(), 0.8 + 4.4 * chance.share(), 0.6 + 0.6 * chance.share());
+        let walkers: Vec<(f64, f64, f64)> = (0..6).map(|_| walker()).collect();
+        let people = |now: f64| -> Vec<SeenPerson> {
+            let walk = |(number, (from, y, speed)): (u32, &(f64, f64, f64))| {
+                let gone = (from + speed * now) % 36.0;
+                let (x, speed) = if gone < 18.0 { (1.0 + gone, *speed) } else { (37.0 - gone, -speed) };
+                SeenPerson { id: HumanId::new(number), ..person(x, *y, speed, 0.0) }
+            };
+            (1..).zip(&walkers).map(walk).collect()
+        };
+        let mut stack = stack(shipped(&task), &task);
+        drive(&mut stack, &people, 80.0);
+        assert_eq!((stack.waypoints().goal(), stack.waypoints().missed()), (None, [].as_slice()), "seed {seed}");
     }
 }
