@@ -81,8 +81,8 @@ impl UpoSocialParams {
         self.covariance_front_height * (1.0 + self.speed_factor_multiplier * speed_mps)
     }
 
-    /// Cost at an offset from a person, m; `None` below the cutoff. Somebody who stands has one round Gaussian; somebody who walks has one
-    /// in front, one behind, and with `use_passing` one to the right, of which the largest counts.
+    /// Cost at an offset from a person, m; `None` below the cutoff. Somebody who stands has one round Gaussian; somebody who
+    /// walks has one in front, one behind, and with `use_passing` one to the right, of which the largest counts.
     #[must_use]
     pub fn cost(&self, person: &SeenPerson, offset: &Vector) -> Option<u8> {
         self.lobes(person).flatten().filter_map(|lobe| lobe.cost(self.height(), offset)).max()

@@ -25,3 +25,26 @@ pub fn touches(map: &Costmap, pose: &Pose, footprint: &[Point]) -> bool {
         places.map(|step| from + way * (step / steps)).any(|at| map.cost_at(&at) == LETHAL)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::costmap::FREE;
+
+    #[test]
+    fn a_disc_touches_by_its_center_and_an_outline_by_its_edges() {
+        let mut map = Costmap::new(100, 100, 0.05, Point::new(-2.5, -2.5), FREE);
+        let (column, row) = map.cell(&Point::new(0.42, 0.0)).unwrap();
+        map.set(column, row, LETHAL);
+        map.set(column - 1, row, INSCRIBED);
+        let corners = [(0.5, 0.2), (-0.5, 0.2), (-0.5, -0.2), (0.5, -0.2)];
+        let outline: Vec<Point> = corners.iter().map(|(x, y)| Point::new(*x, *y)).collect();
+        let at = |x: f64, y: f64, yaw: f64| Pose::new(x, y, yaw);
+        assert!(touches(&map, &at(0.38, 0.0, 0.0), &[]) && !touches(&map, &at(0.3, 0.0, 0.0), &[]));
+        // The cell is inside the outline, at its front edge, and beside it once it is turned.
+        assert!(!touches(&map, &at(0.0, 0.0, 0.0), &outline));
+        assert!(touches(&map, &at(-0.08, 0.0, 0.0), &outline));
+        assert!(!touches(&map, &at(0.0, 0.0, std::f64::consts::FRAC_PI_2), &outline));
+        assert!(!touches(&map, &at(9.0, 0.0, 0.0), &outline), "beyond the map nothing is known to be");
+    }
+}
