@@ -3,8 +3,10 @@
 use socrates_model::{Fault, FaultCode, PlannerName, RobotDriver};
 
 use crate::mission::Mission;
+use crate::nav::{Stack, StackParams};
 use crate::reactive::Reactive;
 use crate::reference::Reference;
+use crate::rpp::{RegulatedPurePursuit, RppParams};
 use crate::walker::Walker;
 
 /// Makes a planner.
@@ -47,8 +49,21 @@ pub const CATALOG: &[PlannerSheet] = &[
         about: "optimal reciprocal collision avoidance: the velocity nearest to its wish at which nobody is hit within 5 s",
         make: Some(|mission| Box::new(Walker::avoids(mission))),
     },
+    PlannerSheet {
+        name: "rpp",
+        about: "Nav2 with NavFn and Regulated Pure Pursuit: sees people by lidar alone, as obstacles; no script",
+        make: Some(|mission| Box::new(rpp(mission))),
+    },
     PlannerSheet { name: PlannerName::NO_ROBOT, about: "no robot at all: the twin run", make: None },
 ];
+
+/// Nav2's stack with Regulated Pure Pursuit and the mission's robot.
+fn rpp(mission: &Mission) -> Stack {
+    let params = StackParams::shipped(&mission.robot);
+    let period_s = 1.0 / params.controller_frequency;
+    let controller = RppParams { period_s, ..RppParams::default() }.with_robot(&mission.robot);
+    Stack::new(params, mission, Box::new(RegulatedPurePursuit::new(&controller)))
+}
 
 /// Names in catalog order.
 #[must_use]

@@ -5,8 +5,10 @@
 //! ```
 //!
 //! Modules in reading order: what a planner is given ([`mission`]), the list of planners ([`catalog`]), the
-//! floor as planners see it (ground), ways round people (detour), past somebody slower (overtaking), following a way (pursuit), where and when it
-//! waits (waiting, patience), then one file per planner and the robot's script that `reference` plays.
+//! floor as planners see it (ground), ways round people (detour), past somebody slower (overtaking), following a way
+//! (pursuit), where and when it waits (waiting, patience), then one file per planner and the robot's script that
+//! `reference` plays. Beside them Nav2's parts: costs of the floor ([`costmap`]), the shortest way over them
+//! ([`navfn`]), what follows it ([`controller`], [`rpp`]), and the whole ([`nav`]).
 //!
 //! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number.
 
@@ -14,6 +16,9 @@ pub mod catalog;
 pub mod controller;
 pub mod costmap;
 pub mod mission;
+pub mod nav;
+pub mod navfn;
+pub mod rpp;
 
 mod detour;
 mod ground;

@@ -12,7 +12,7 @@ use socrates_model::{
 
 use crate::{Mission, make, names};
 
-fn mission(script: Vec<RobotRule>) -> Mission {
+pub(crate) fn mission(script: Vec<RobotRule>) -> Mission {
     let (width, height) = (200, 60);
     let mut cells = vec![Cell::Free; width * height];
     for (place, cell) in cells.iter_mut().enumerate() {
@@ -35,14 +35,39 @@ fn mission(script: Vec<RobotRule>) -> Mission {
     }
 }
 
-fn person(x: f64, y: f64, vx: f64, vy: f64) -> SeenPerson {
+pub(crate) fn person(x: f64, y: f64, vx: f64, vy: f64) -> SeenPerson {
     let id = HumanId::new(1);
     SeenPerson { id, at: Point::new(x, y), velocity: Vector::new(vx, vy), yaw: 0.0, radius_m: 0.28, gesture: None }
 }
 
 /// Drives a point robot without inertia for `secs`; gives back its places and commands.
-fn drive(driver: &mut dyn RobotDriver, people: &dyn Fn(f64) -> Vec<SeenPerson>, secs: f64) -> Vec<(Pose, Command)> {
+pub(crate) fn drive(
+    driver: &mut dyn RobotDriver,
+    people: &dyn Fn(f64) -> Vec<SeenPerson>,
+    secs: f64,
+) -> Vec<(Pose, Command)> {
     drive_among(driver, &mut |now, _| people(now), secs)
+}
+
+/// What the lidar says between the walls of [`mission`], among people.
+pub(crate) fn scan(pose: &Pose, people: &[SeenPerson]) -> Vec<f64> {
+    let range = |beam: u32| {
+        let angle = pose.yaw + f64::from(beam).to_radians();
+        let ahead = Vector::new(libm::cos(angle), libm::sin(angle));
+        let wall = |at: f64, along: f64, ends: (f64, f64)| {
+            let end = if along > 0.0 { ends.1 } else { ends.0 };
+            if along.abs() < 1e-9 { f64::INFINITY } else { ((end - at) / along).max(0.0) }
+        };
+        let walls = wall(pose.x, ahead.x, (0.2, 19.8)).min(wall(pose.y, ahead.y, (0.2, 5.8)));
+        let hit = |person: &SeenPerson| {
+            let to = person.at - pose.point();
+            let (along, aside) = (to.dot(&ahead), to.perp(&ahead));
+            let inside = person.radius_m.powi(2) - aside * aside;
+            (inside >= 0.0 && along > 0.0).then(|| (along - inside.sqrt()).max(0.0))
+        };
+        people.iter().filter_map(hit).fold(walls.min(12.0), f64::min)
+    };
+    (0..360).map(range).collect()
 }
 
 /// The same among people who go by where the robot is.
@@ -69,7 +94,7 @@ fn drive_through(
     while (tick as f64) * dt < secs {
         let now = (tick as f64) * dt;
         let seen = people(now, &pose);
-        let lidar = || vec![12.0; 360];
+        let lidar = || scan(&pose, &seen);
         let time = SimTime::from_nanos((now * 1e9).round() as u64);
         let observation = Observation {
             time,
