@@ -14,6 +14,7 @@ pub mod catalog;
 pub mod controller;
 pub mod costmap;
 pub mod mission;
+pub mod mppi;
 
 mod detour;
 mod ground;
