@@ -76,7 +76,7 @@ fn noise_is_drawn_again_only_where_that_is_asked_for() {
     let draws = |regenerate_noises| {
         let mut mppi = Mppi::new(&MppiParams { regenerate_noises, ..bringup(50) }, 5).unwrap();
         let mut world = World::empty();
-        (0..5).for_each(|_| drop(world.step(&mut mppi)));
+        world.steps(&mut mppi, 5);
         mppi.draw
     };
     assert_eq!((draws(false), draws(true)), (1, 6));
@@ -101,27 +101,23 @@ fn a_robot_in_an_obstacle_gets_an_error_after_one_retry() {
 }
 
 #[test]
-fn a_chosen_trajectory_into_an_obstacle_is_refused_by_the_validator_alone() {
-    // No critic sees the wall 0.3 m ahead.
-    let mut world = World::empty();
-    (0..200).for_each(|row| (86..100).for_each(|column| world.costmap.set(column, row, LETHAL)));
-    let blind = |humble| {
-        let critics = ["GoalCritic", "PathFollowCritic"].into_iter().filter_map(named).collect();
-        Mppi::new(&MppiParams { critics, humble, ..bringup(200) }, 5).unwrap()
+fn the_validator_stops_a_trajectory_into_an_obstacle_that_no_critic_sees() {
+    let drives_into_it = |humble| {
+        let critics = ["PathFollowCritic", "PathAlignCritic"].into_iter().filter_map(named).collect();
+        let mut mppi = Mppi::new(&MppiParams { critics, humble, ..bringup(200) }, 5).unwrap();
+        // A wall 0.3 m ahead.
+        let mut world = World::empty();
+        (0..200).for_each(|row| (86..100).for_each(|column| world.costmap.set(column, row, LETHAL)));
+        let inside = (0..200).any(|_| {
+            // As Nav2's controller server: no command is a stop.
+            let command = world.command(&mut mppi).unwrap_or_default();
+            world.carry_out(command);
+            world.costmap.cost_at(&world.pose.point()) == LETHAL
+        });
+        (inside, mppi.draw > 1)
     };
-    let mut found = Vec::new();
-    for humble in [false, true] {
-        let mut mppi = blind(humble);
-        let mut world = World { costmap: world.costmap.clone(), ..World::empty() };
-        found.push((0..30).find_map(|_| match world.command(&mut mppi) {
-            Ok(command) => {
-                world.carry_out(command);
-                None
-            }
-            Err(why) => Some(why),
-        }));
-    }
-    assert_eq!(found, [Some(NoControl::Collision), None], "Nav2 Humble has no validator");
+    assert_eq!(drives_into_it(false), (false, true));
+    assert_eq!(drives_into_it(true), (true, false), "Nav2 Humble has no validator");
 }
 
 #[test]
@@ -172,11 +168,11 @@ fn a_speed_limit_is_a_limit() {
     assert!((fastest - 0.2).abs() < 1e-6, "{fastest}");
     // After a faster drive it brakes as fast as it can.
     world.speed_share = 1.0;
-    (0..40).for_each(|_| drop(world.step(&mut mppi)));
+    world.steps(&mut mppi, 40);
     let (fast, share) = (world.speed.vx, 0.5);
     assert!(fast > 0.35, "{fast}");
     world.speed_share = share;
-    (0..3).for_each(|_| drop(world.step(&mut mppi)));
+    world.steps(&mut mppi, 3);
     assert!(world.speed.vx <= 0.25 + 1e-6, "{}", world.speed.vx);
 }
 
@@ -216,7 +212,7 @@ fn the_speed_that_is_reckoned_with_is_the_last_command_as_far_as_the_base_follow
         (0..10).map(|_| [world.command(&mut closed).unwrap().vx, world.command(&mut open).unwrap().vx]).collect();
     // The robot never moves: within a closed loop no command gets more than two steps ahead of standing.
     assert!(sent.iter().all(|[closed, _]| *closed <= 0.3 + 1e-6), "{sent:?}");
-    assert!(sent[9][1] > 0.25 && sent[9][1] > sent[0][1], "{sent:?}");
+    assert!(sent[9][1] > sent[9][0] + 0.01, "{sent:?}");
 }
 
 #[test]
@@ -276,7 +272,7 @@ fn nav2_humble_drives_as_well() {
     let params = MppiParams { humble: true, sgf_order: SgfOrder::Two, ..bringup(400) };
     let mut mppi = Mppi::new(&params, 5).unwrap();
     let mut world = World::empty();
-    (0..120).for_each(|_| drop(world.step(&mut mppi)));
+    world.steps(&mut mppi, 120);
     assert!(world.pose.x > 6.0 && (world.pose.y - 5.0).abs() < 0.1, "{:?}", world.pose);
 }
 

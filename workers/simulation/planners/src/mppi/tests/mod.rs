@@ -106,6 +106,13 @@ impl World {
         self.carry_out(command);
         command
     }
+
+    /// Several cycles.
+    pub(super) fn steps(&mut self, mppi: &mut Mppi, count: u16) {
+        for _ in 0..count {
+            self.step(mppi);
+        }
+    }
 }
 
 /// The bringup parameters with fewer trajectories.
