@@ -75,15 +75,8 @@ fn ours(row: &Row, costmap: &Costmap, seed: u64, instructions: Instructions) -> 
     let Ok(mppi) = Mppi::new(&row.params, seed) else { return (f64::NAN, Pose::new(0.0, 0.0, 0.0)) };
     let mut mppi = mppi.with_instructions(instructions);
     drive(costmap, |pose, speed, plan| {
-        let cycle = Following {
-            pose,
-            speed,
-            plan,
-            goal: Pose::new(8.0, 5.0, 0.0),
-            costmap,
-            footprint: &[],
-            speed_share: 1.0,
-        };
+        let cycle =
+            Following { pose, speed, plan, goal: Pose::new(8.0, 5.0, 0.0), costmap, footprint: &[], speed_share: 1.0 };
         mppi.command(&cycle).unwrap_or_default()
     })
 }

@@ -15,6 +15,7 @@ pub mod controller;
 pub mod costmap;
 pub mod mission;
 pub mod mppi;
+pub mod params;
 
 mod detour;
 mod ground;

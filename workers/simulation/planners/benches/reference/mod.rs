@@ -108,10 +108,8 @@ impl Reference {
             furthest,
             valid: &[],
         };
-        let valid: Vec<bool> = points
-            .iter()
-            .map(|(x, y)| !matches!(scene.cost(*x, *y), INSCRIBED | LETHAL | UNKNOWN))
-            .collect();
+        let valid: Vec<bool> =
+            points.iter().map(|(x, y)| !matches!(scene.cost(*x, *y), INSCRIBED | LETHAL | UNKNOWN)).collect();
         scene.valid = &valid;
         self.judge(&scene);
         self.average();
@@ -134,9 +132,8 @@ impl Reference {
                     }
                 }
                 let noise = self.noise[number * steps + step];
-                for axis in 0..3 {
-                    now.control[axis] = self.sequence[step][axis] + noise[axis];
-                }
+                let u = self.sequence[step];
+                now.control = [u[0] + noise[0], u[1] + noise[1], u[2] + noise[2]];
                 let (sine, cosine) = libm::sincosf(before.yaw);
                 now.speed = speed;
                 now.yaw = before.yaw + speed[2] * dt;
@@ -228,8 +225,8 @@ impl Reference {
         self.sequence.iter_mut().for_each(|u| *u = [0.0; 3]);
         for (trajectory, weight) in self.trajectories.iter().zip(&self.costs) {
             for (step, u) in trajectory.iter().zip(&mut self.sequence) {
-                for axis in 0..3 {
-                    u[axis] += weight / sum * step.control[axis];
+                for (u, control) in u.iter_mut().zip(step.control) {
+                    *u += weight / sum * control;
                 }
             }
         }
@@ -324,9 +321,7 @@ impl Scene<'_> {
     fn cells(&self, trajectory: &[Step], it: &MppiParams, left: f32) -> f32 {
         let own = &it.cost_critic;
         let mut total = 0.0;
-        let mut count = 0;
         for step in trajectory.iter().step_by(own.trajectory_point_step) {
-            count += 1;
             match self.cost(step.x, step.y) {
                 0 => (),
                 INSCRIBED..=UNKNOWN => {
@@ -340,7 +335,7 @@ impl Scene<'_> {
                 }
             }
         }
-        let samples = if count == 0 { 1 } else { it.time_steps.div_ceil(own.trajectory_point_step) };
+        let samples = it.time_steps.div_ceil(own.trajectory_point_step);
         own.cost_weight as f32 / 254.0 * total / samples as f32
     }
 

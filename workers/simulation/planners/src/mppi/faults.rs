@@ -113,8 +113,8 @@ impl MppiParams {
             ("model_delay_wz", self.model_delay_wz),
         ];
         for (key, delay) in delays {
-            let most = MOST_DELAY * self.model_dt;
-            found.check(key, delay, "0 to 1000 times model_dt", delay >= 0.0 && !(delay > most));
+            let most = MOST_DELAY * self.model_dt.abs();
+            found.check(key, delay, "0 to 1000 times model_dt", (0.0..=most).contains(&delay));
         }
         if let MotionModel::Ackermann { min_turning_r } = self.motion_model {
             found.above_0("AckermannConstraints.min_turning_r", min_turning_r);

@@ -136,7 +136,7 @@ impl<S: Simd> Lanes<S> {
     }
 
     #[inline(always)]
-    pub(crate) fn from_bits(self, bits: S::u32s) -> Self {
+    pub(crate) fn with_bits(self, bits: S::u32s) -> Self {
         Self { raw: self.simd.transmute_f32s_u32s(bits), ..self }
     }
 

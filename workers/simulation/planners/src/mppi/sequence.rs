@@ -61,6 +61,6 @@ mod tests {
         assert_eq!((sequence.vx.as_slice(), sequence.wz.as_slice()), (&[2.0, 3.0, 3.0][..], &[5.0, 6.0, 6.0][..]));
         let mut short = Sequence { vx: vec![1.0], vy: vec![2.0], wz: vec![3.0] };
         short.shift();
-        assert_eq!(short.command(0), [1.0, 2.0, 3.0]);
+        assert_eq!(short.command(0).map(f32::to_bits), [1.0_f32, 2.0, 3.0].map(f32::to_bits));
     }
 }

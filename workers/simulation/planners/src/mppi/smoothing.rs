@@ -110,7 +110,7 @@ mod tests {
     fn the_history_holds_the_last_four_commands() {
         let mut smoother = Smoother::default();
         (1..=6_u8).for_each(|number| smoother.push([f32::from(number), 0.0, 0.0]));
-        assert_eq!(smoother.history.map(|command| command[0]), [3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(smoother.history.map(|command| command[0] as u8), [3, 4, 5, 6]);
         let mut sequence = Sequence { vx: vec![6.0; 56], ..Sequence::zeros(56) };
         smoother.smooth(&mut sequence, SgfOrder::One);
         assert!((sequence.vx[0] - (3.0 + 4.0 + 5.0 + 6.0 * 6.0) / 9.0).abs() < 1e-6);

@@ -38,7 +38,7 @@ pub struct PathAngleParams {
     pub threshold_to_consider: f64,
     /// Points of the plan between the farthest one reached and the one to be looked at. Default 4.
     pub offset_from_furthest: usize,
-    /// It judges where the robot looks farther off that point, rad. Default 0.785398.
+    /// It judges where the robot looks farther off that point, rad. Default pi / 4.
     pub max_angle_to_furthest: f64,
     /// Which way round. Default forward.
     pub mode: PathAngleMode,
@@ -52,7 +52,7 @@ impl Default for PathAngleParams {
             cost_weight: 2.2,
             threshold_to_consider: 0.5,
             offset_from_furthest: 4,
-            max_angle_to_furthest: 0.785_398,
+            max_angle_to_furthest: std::f64::consts::FRAC_PI_4,
             mode: PathAngleMode::Forward,
         }
     }

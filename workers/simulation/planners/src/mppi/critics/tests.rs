@@ -142,11 +142,12 @@ fn constraint_of_nav2_humble_charges_the_length_of_the_velocity() {
 #[test]
 fn goal_angle_charges_the_mean_angle_near_the_goal() {
     let mut stage = Stage::new();
-    stage.goal_yaw = 3.14;
+    // As Nav2 has it: 3.14.
+    stage.goal_yaw = 314.0 / 100.0;
     stage.left_m = 0.3;
     stage.each("GoalAngleCritic", 9.42);
     stage.params.goal_angle_critic.symmetric_yaw_tolerance = true;
-    stage.each("GoalAngleCritic", 3.0 * (std::f32::consts::PI - 3.14));
+    stage.each("GoalAngleCritic", 3.0 * (std::f32::consts::PI - 314.0 / 100.0));
     for left_m in [0.8, 9.0] {
         stage.left_m = left_m;
         stage.each("GoalAngleCritic", 0.0);

@@ -7,7 +7,7 @@ mod properties;
 use socrates_model::{Point, Pose};
 
 use super::{Mppi, MppiParams};
-use crate::controller::{Controller, Following, NoControl, Twist};
+use crate::controller::{Controller as _, Following, NoControl, Twist};
 use crate::costmap::{Costmap, FREE, LETHAL};
 
 /// A robot on a floor with a plan. It carries out every command at once.
