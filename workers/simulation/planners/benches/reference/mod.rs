@@ -341,13 +341,13 @@ impl Scene<'_> {
 
     fn align(&self, trajectory: &[Step], it: &MppiParams) -> f32 {
         let own = &it.path_align_critic;
-        let (mut travelled, mut point, mut sum, mut count) = (0.0, 0, 0.0, 0.0);
+        let (mut traveled, mut point, mut sum, mut count) = (0.0, 0, 0.0, 0.0);
         let mut before = trajectory[0];
         for step in trajectory.iter().step_by(own.trajectory_point_step).skip(1) {
-            travelled += libm::hypotf(step.x - before.x, step.y - before.y);
+            traveled += libm::hypotf(step.x - before.x, step.y - before.y);
             before = *step;
             while point + 1 < self.furthest
-                && (self.arc[point + 1] - travelled).abs() <= (self.arc[point] - travelled).abs()
+                && (self.arc[point + 1] - traveled).abs() <= (self.arc[point] - traveled).abs()
             {
                 point += 1;
             }

@@ -8,6 +8,8 @@ use super::params::{MotionModel, MppiParams};
 pub struct BadParam {
     /// Nav2's name of it, sections apart by points.
     pub key: &'static str,
+    /// Whether it is a key of the controller server, not of MPPI's own section.
+    pub of_server: bool,
     /// Its value.
     pub value: String,
     /// What may stand there.
@@ -34,7 +36,7 @@ struct Found(Vec<BadParam>);
 impl Found {
     fn check(&mut self, key: &'static str, value: impl ToString, allowed: &'static str, good: bool) {
         if !good {
-            self.0.push(BadParam { key, value: value.to_string(), allowed });
+            self.0.push(BadParam { key, of_server: false, value: value.to_string(), allowed });
         }
     }
 
@@ -82,18 +84,24 @@ impl MppiParams {
         }
         found.at_least_1("iteration_count", self.iteration_count);
         found.above_0("model_dt", self.model_dt);
-        found.above_0("controller_frequency", self.controller_frequency);
-        let slow = self.period_s() > self.model_dt + 1e-6;
-        if self.model_dt > 0.0 && self.controller_frequency > 0.0 {
-            let value = self.controller_frequency;
-            found.check("controller_frequency", value, "at least 1 / model_dt", !slow);
-        }
+        self.check_frequency(found);
         found.above_0("vx_std", self.vx_std);
         found.above_0("vy_std", self.vy_std);
         found.at_least_0("wz_std", self.wz_std);
         found.above_0("temperature", self.temperature);
         found.at_least_0("gamma", self.gamma);
         found.at_least_0("reset_period", self.reset_period);
+    }
+
+    fn check_frequency(&self, found: &mut Found) {
+        let before = found.0.len();
+        let frequency = self.controller_frequency;
+        found.above_0("controller_frequency", frequency);
+        if self.model_dt > 0.0 && frequency > 0.0 {
+            let slow = self.period_s() > self.model_dt + 1e-6;
+            found.check("controller_frequency", frequency, "at least 1 / model_dt", !slow);
+        }
+        found.0.iter_mut().skip(before).for_each(|bad| bad.of_server = true);
     }
 
     fn check_motion(&self, found: &mut Found) {

@@ -11,6 +11,9 @@ use pulp::Simd;
 /// Lanes of the widest registers: rows are padded to a multiple of it, and sums over a row run in so many parts.
 pub(crate) const LANES: usize = 16;
 
+/// The bit of an f32 that is its sign.
+const SIGN: u32 = 1 << 31;
+
 /// Instructions of the processor. They change the time a cycle takes and no byte of its result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Instructions {
@@ -96,7 +99,8 @@ impl<S: Simd> Lanes<S> {
 
     #[inline(always)]
     pub(crate) fn abs(self) -> Self {
-        Self { raw: self.simd.abs_f32s(self.raw), ..self }
+        // By its bits: pulp's own is not always inlined.
+        self.with_bits(self.simd.and_u32s(self.bits(), self.simd.splat_u32s(!SIGN)))
     }
 
     #[inline(always)]
@@ -203,7 +207,7 @@ impl<S: Simd> Neg for Lanes<S> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { raw: self.simd.neg_f32s(self.raw), ..self }
+        self.with_bits(self.simd.xor_u32s(self.bits(), self.simd.splat_u32s(SIGN)))
     }
 }
 

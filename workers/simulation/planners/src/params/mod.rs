@@ -177,7 +177,7 @@ fn relate(params: &mut Nav2Params, root: &Section<'_>) {
     let Err(found) = mppi.check() else { return };
     for bad in found.0 {
         let server = "controller_server.ros__parameters";
-        let section = if bad.key == "controller_frequency" { "" } else { ".FollowPath" };
+        let section = if bad.of_server { "" } else { ".FollowPath" };
         root.refuse_below(&format!("{server}{section}.{}", bad.key), &bad.value, bad.allowed);
     }
 }

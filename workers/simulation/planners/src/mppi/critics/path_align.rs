@@ -3,7 +3,7 @@
 //! Active where at least the threshold is left of the plan, the farthest point F that any trajectory gets to is at least `offset`
 //! points on, and no more than a share of the points before it (and no more than two) is blocked. A trajectory is sampled every so
 //! many steps from the second sample on. Each sample belongs to the point of the plan whose arc length is nearest to the length
-//! travelled so far; where that point is free, the distance to it counts, with the difference of headings as a third coordinate if
+//! traveled so far; where that point is free, the distance to it counts, with the difference of headings as a third coordinate if
 //! asked for. Term: the mean over the samples that count.
 
 use pulp::Simd;
@@ -66,7 +66,7 @@ struct PathAlign {
     max_blocked: f32,
     headings: bool,
     table: Table,
-    travelled: Vec<f32>,
+    traveled: Vec<f32>,
     sums: Vec<f32>,
     counts: Vec<f32>,
 }
@@ -83,7 +83,7 @@ pub(super) fn make(params: &MppiParams) -> Option<Box<dyn Critic>> {
             max_blocked: own.max_path_occupancy_ratio as f32,
             headings: own.use_path_orientations,
             table: Table::default(),
-            travelled: row(),
+            traveled: row(),
             sums: row(),
             counts: row(),
         }) as Box<dyn Critic>
@@ -105,7 +105,7 @@ impl Critic for PathAlign {
             return;
         }
         self.table.set(scene.plan, valid, count);
-        for row in [&mut self.travelled, &mut self.sums, &mut self.counts] {
+        for row in [&mut self.traveled, &mut self.sums, &mut self.counts] {
             row.fill(0.0);
         }
         scene.arch.dispatch(Pass { critic: self, rollout, costs: &mut verdict.costs });
@@ -176,20 +176,20 @@ impl pulp::WithSimd for Pass<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let (stride, headings) = (self.critic.stride, self.critic.headings);
-        let PathAlign { table, travelled, sums, counts, .. } = &mut *self.critic;
+        let PathAlign { table, traveled, sums, counts, .. } = &mut *self.critic;
         let steps = self.rollout.steps();
         for step in (stride..steps).step_by(stride) {
             let Rollout { x, y, yaw, .. } = self.rollout;
             let now = x.row(step).as_chunks().0.iter().zip(y.row(step).as_chunks().0).zip(yaw.row(step).as_chunks().0);
             let before = x.row(step - stride).as_chunks().0.iter().zip(y.row(step - stride).as_chunks().0);
             let sums = sums.as_chunks_mut().0.iter_mut().zip(counts.as_chunks_mut().0);
-            let rows = travelled.as_chunks_mut().0.iter_mut().zip(sums);
-            for ((travelled, (sum, count)), (now, before)) in rows.zip(now.zip(before)) {
-                travel(simd, travelled, now.0, before);
+            let rows = traveled.as_chunks_mut().0.iter_mut().zip(sums);
+            for ((traveled, (sum, count)), (now, before)) in rows.zip(now.zip(before)) {
+                travel(simd, traveled, now.0, before);
                 let mut points = [[0.0; LANES]; 4];
                 let [px, py, pyaw, free] = &mut points;
                 let lanes = px.iter_mut().zip(py).zip(pyaw.iter_mut().zip(free));
-                for (((x, y), (yaw, free)), s) in lanes.zip(travelled.iter()) {
+                for (((x, y), (yaw, free)), s) in lanes.zip(traveled.iter()) {
                     [*x, *y, *yaw, *free] = table.nearest(*s);
                 }
                 add(simd, &points, now, headings, (sum, count));
@@ -207,14 +207,14 @@ impl pulp::WithSimd for Pass<'_> {
 
 type Chunk = [f32; LANES];
 
-/// Lengths travelled up to these positions.
+/// Lengths traveled up to these positions.
 #[inline(always)]
-fn travel<S: Simd>(simd: S, travelled: &mut Chunk, (x, y): (&Chunk, &Chunk), (x0, y0): (&Chunk, &Chunk)) {
+fn travel<S: Simd>(simd: S, traveled: &mut Chunk, (x, y): (&Chunk, &Chunk), (x0, y0): (&Chunk, &Chunk)) {
     let now = groups(simd, x).zip(groups(simd, y));
     let before = groups(simd, x0).zip(groups(simd, y0));
-    for (travelled, ((x, y), (x0, y0))) in groups_mut::<S>(travelled).zip(now.zip(before)) {
+    for (traveled, ((x, y), (x0, y0))) in groups_mut::<S>(traveled).zip(now.zip(before)) {
         let (dx, dy) = (x - x0, y - y0);
-        *travelled = (Lanes::new(simd, *travelled) + (dx * dx + dy * dy).sqrt()).raw;
+        *traveled = (Lanes::new(simd, *traveled) + (dx * dx + dy * dy).sqrt()).raw;
     }
 }
 

@@ -275,7 +275,7 @@ fn path_align_leaves_a_blocked_plan_to_others() {
 }
 
 #[test]
-fn path_align_goes_along_with_the_length_travelled() {
+fn path_align_goes_along_with_the_length_traveled() {
     let mut stage = Stage::new();
     stage.plan_along_x((0..60_u8).map(|number| 0.05 * f32::from(number)));
     for (step, row) in (0_u8..).zip(stage.rollout.x.iter_mut()) {
