@@ -24,14 +24,40 @@ pub enum Instructions {
     Avx2,
     /// One number at a time.
     Baseline,
+    /// Sixteen at a time, as AVX-512 does, in whatever instructions there are: for processors that have none so wide.
+    #[cfg(test)]
+    Sixteen,
 }
 
 impl Instructions {
-    pub(crate) fn arch(self) -> pulp::Arch {
+    pub(crate) fn arch(self) -> Arch {
         match self {
-            Self::Detected => pulp::Arch::new(),
-            Self::Avx2 => avx2(),
-            Self::Baseline => pulp::Arch::Scalar,
+            Self::Detected => Arch::Native(pulp::Arch::new()),
+            Self::Avx2 => Arch::Native(avx2()),
+            Self::Baseline => Arch::Native(pulp::Arch::Scalar),
+            #[cfg(test)]
+            Self::Sixteen => Arch::Sixteen,
+        }
+    }
+}
+
+/// What runs the hot loops.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Arch {
+    /// A set of instructions of this processor.
+    Native(pulp::Arch),
+    /// See [`Instructions::Sixteen`].
+    #[cfg(test)]
+    Sixteen,
+}
+
+impl Arch {
+    /// Runs a loop.
+    pub(crate) fn dispatch<P: pulp::WithSimd>(self, pass: P) -> P::Output {
+        match self {
+            Self::Native(arch) => arch.dispatch(pass),
+            #[cfg(test)]
+            Self::Sixteen => pass.with_simd(pulp::Scalar512b),
         }
     }
 }

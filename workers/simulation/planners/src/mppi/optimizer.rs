@@ -5,7 +5,7 @@ use socrates_model::Pose;
 use super::critics::Critic;
 use super::faults::BadParams;
 use super::ground::Ground;
-use super::lanes::Instructions;
+use super::lanes::{Arch, Instructions};
 use super::limits::Limits;
 use super::noise::{Axes, Draw};
 use super::params::MppiParams;
@@ -29,7 +29,7 @@ const SAME_PERIOD_S: f64 = 1e-6;
 pub struct Mppi {
     params: MppiParams,
     seed: u64,
-    arch: pulp::Arch,
+    arch: Arch,
     limits: Limits,
     critics: Vec<Box<dyn Critic>>,
     /// Whether the sequence moves on by a step each cycle.

@@ -5,7 +5,7 @@ use socrates_model::geometry::wrap_angle;
 use socrates_model::{Point, Pose};
 
 use super::ground::Ground;
-use super::lanes::groups;
+use super::lanes::{Arch, groups};
 use super::rollout::Rollout;
 
 /// The local plan in axes of the map with the robot at the origin.
@@ -83,7 +83,7 @@ pub(crate) struct Scene<'a> {
     /// Whether critics are those of Nav2 Humble.
     pub(crate) humble: bool,
     /// Instructions of the processor.
-    pub(crate) arch: pulp::Arch,
+    pub(crate) arch: Arch,
 }
 
 /// What critics say of a batch, and what they find out for each other.

@@ -144,7 +144,9 @@ pub struct RppSpec {
     pub rotate_to_heading_min_angle: f64,
     /// How fast it turns then, rad/s, above 0. Default 1.8.
     pub rotate_to_heading_angular_vel: f64,
-    /// Angular acceleration of that, rad/s², above 0. Default 3.2.
+    /// Largest acceleration, m/s², above 0. Default 2.5.
+    pub max_linear_accel: f64,
+    /// Largest angular acceleration, rad/s², above 0. Default 3.2.
     pub max_angular_accel: f64,
     /// Least speed near the goal, m/s, above 0. Default 0.05.
     pub min_approach_linear_velocity: f64,
@@ -166,6 +168,8 @@ pub struct RppSpec {
     pub cost_scaling_dist: f64,
     /// Share of the distance that the speed keeps, above 0. Default 1.
     pub cost_scaling_gain: f64,
+    /// Loss of cost with distance in the local costmap, 1/m, above 0. Default 3.
+    pub inflation_cost_scaling_factor: f64,
 }
 
 impl Default for RppSpec {
@@ -180,6 +184,7 @@ impl Default for RppSpec {
             use_rotate_to_heading: true,
             rotate_to_heading_min_angle: 0.785,
             rotate_to_heading_angular_vel: 1.8,
+            max_linear_accel: 2.5,
             max_angular_accel: 3.2,
             min_approach_linear_velocity: 0.05,
             approach_velocity_scaling_dist: 0.6,
@@ -191,6 +196,7 @@ impl Default for RppSpec {
             use_cost_regulated_linear_velocity_scaling: true,
             cost_scaling_dist: 0.6,
             cost_scaling_gain: 1.0,
+            inflation_cost_scaling_factor: 3.0,
         }
     }
 }
@@ -331,6 +337,8 @@ fn rpp(from: &mut Section<'_>) -> RppSpec {
         ("regulated_linear_scaling_min_speed", &mut found.regulated_linear_scaling_min_speed),
         ("cost_scaling_dist", &mut found.cost_scaling_dist),
         ("cost_scaling_gain", &mut found.cost_scaling_gain),
+        ("inflation_cost_scaling_factor", &mut found.inflation_cost_scaling_factor),
+        ("max_linear_accel", &mut found.max_linear_accel),
     ] {
         from.number(key, into, Range::Above0);
     }

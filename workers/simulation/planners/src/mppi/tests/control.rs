@@ -21,12 +21,19 @@ fn the_same_seed_gives_the_same_commands_on_every_set_of_instructions() {
             let command = world.step(&mut mppi);
             [command.vx, command.vy, command.omega]
                 .iter()
-                .fold(hash, |hash, value| (hash ^ value.to_bits()).wrapping_mul(0x0100_0000_01B3))
+                .map(|value| u64::from((*value as f32).to_bits()))
+                .fold(hash, |hash, bits| (hash ^ bits).wrapping_mul(0x0100_0000_01B3))
         })
     };
-    for model in [MotionModel::DiffDrive, MotionModel::Omni, MotionModel::Ackermann { min_turning_r: 0.2 }] {
+    for (model, recorded) in [
+        (MotionModel::DiffDrive, 0x76E2_288C_F611_045C),
+        (MotionModel::Omni, 0x7571_F621_3D37_2D77),
+        (MotionModel::Ackermann { min_turning_r: 0.2 }, 0xE029_FDFE_949B_F3AE),
+    ] {
         let baseline = hash(Instructions::Baseline, model);
+        assert_eq!(baseline, recorded, "{model:?}: {baseline:#018X} differs from what other machines found");
         assert_eq!(baseline, hash(Instructions::Avx2, model), "{model:?} with AVX2");
+        assert_eq!(baseline, hash(Instructions::Sixteen, model), "{model:?} with sixteen lanes");
         assert_eq!(baseline, hash(Instructions::Detected, model), "{model:?} with what there is");
     }
 }
@@ -136,6 +143,17 @@ fn a_plan_without_poses_is_an_error() {
     };
     assert_eq!(mppi.command(&cycle), Err(NoControl::NoPlan));
     assert!(mppi.command(&Following { plan: &[goal], ..cycle }).is_ok(), "one pose is a plan");
+}
+
+#[test]
+fn what_is_no_number_is_an_error_and_leaves_nothing_behind() {
+    let mut mppi = Mppi::new(&bringup(50), 5).unwrap();
+    let lost = World { pose: Pose::new(f64::NAN, 5.0, 0.0), ..World::empty() };
+    assert_eq!(lost.command(&mut mppi), Err(NoControl::Collision));
+    let dizzy = World { pose: Pose::new(4.0, 5.0, f64::INFINITY), ..World::empty() };
+    assert_eq!(dizzy.command(&mut mppi), Err(NoControl::Collision));
+    let command = World::empty().command(&mut mppi).unwrap();
+    assert!(command.vx.is_finite() && command.omega.is_finite());
 }
 
 #[test]
