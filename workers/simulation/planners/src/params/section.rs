@@ -49,13 +49,18 @@ impl Notes {
 
     /// Notes a value that cannot be meant.
     pub(super) fn add(&mut self, path: &[String], value: impl Into<String>, allowed: impl Into<String>) {
-        let value: String = value.into();
-        let shown = value.chars().take(SHOWN_CHARS).collect();
-        let bad =
-            BadValue { key: path.join("."), line: line_of(&self.text, path), value: shown, allowed: allowed.into() };
-        if !self.bad.iter().any(|other| other.key == bad.key) {
-            self.bad.push(bad);
+        let key = path.join(".");
+        // The first fault of a key is the one to mend.
+        if self.bad.iter().any(|other| other.key == key) {
+            return;
         }
+        let value: String = value.into();
+        self.bad.push(BadValue {
+            key,
+            line: line_of(&self.text, path),
+            value: value.chars().take(SHOWN_CHARS).collect(),
+            allowed: allowed.into(),
+        });
     }
 }
 
