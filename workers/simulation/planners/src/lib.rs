@@ -16,8 +16,10 @@ pub mod catalog;
 pub mod controller;
 pub mod costmap;
 pub mod mission;
+pub mod mppi;
 pub mod nav;
 pub mod navfn;
+pub mod params;
 pub mod rpp;
 
 mod detour;
