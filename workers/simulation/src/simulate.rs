@@ -82,10 +82,11 @@ pub fn simulate_into(
     let encounters =
         setup.paths.encounters.iter().rev().filter_map(|meet| Some((meet.human, place(&meet.node)?))).collect();
     let people: Vec<HumanId> = setup.proposal.humans.iter().map(|human| human.id).collect();
+    let groups = setup.proposal.humans.iter().filter_map(|human| Some((human.id, human.group?.0))).collect();
     let (run, seed) = (setup.run.clone(), setup.seed);
     let engine = Engine::new(setup)?;
     let field = engine.floor().field().clone();
-    let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, encounters };
+    let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, groups, seed, encounters };
     let Some(driver) = planner.external() else {
         let mut driver = make(planner.as_str(), &mission).map_err(|fault| vec![fault])?;
         match driver.as_mut() {

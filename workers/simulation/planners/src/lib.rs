@@ -8,9 +8,10 @@
 //! floor as planners see it (ground), ways round people (detour), past somebody slower (overtaking), following a way
 //! (pursuit), where and when it waits (waiting, patience), then one file per planner and the robot's script that
 //! `reference` plays. Beside them Nav2's parts: costs of the floor ([`costmap`]), the shortest way over them
-//! ([`navfn`]), what follows it ([`controller`], [`rpp`]), and the whole ([`nav`]).
+//! ([`navfn`]), what follows it ([`controller`], [`rpp`], [`mppi`]), the whole ([`nav`]), and its parameter files
+//! ([`params`], [`nav2`]).
 //!
-//! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number.
+//! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number that no seed gives.
 
 pub mod catalog;
 pub mod controller;
@@ -18,6 +19,7 @@ pub mod costmap;
 pub mod mission;
 pub mod mppi;
 pub mod nav;
+pub mod nav2;
 pub mod navfn;
 pub mod params;
 pub mod rpp;

@@ -31,6 +31,8 @@ pub(crate) fn mission(script: Vec<RobotRule>) -> Mission {
         waypoints: route.clone(),
         route,
         script,
+        groups: Vec::new(),
+        seed: 1,
         encounters: BTreeMap::new(),
     }
 }

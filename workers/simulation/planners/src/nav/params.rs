@@ -97,16 +97,17 @@ fn local(inflation: InflationParams) -> CostmapParams {
 }
 
 impl StackParams {
-    /// The same with the body and the limits of a robot; backward it may go at a quarter of its speed.
+    /// The same with the body and the limits of a robot.
     #[must_use]
     pub fn with_robot(mut self, robot: &RobotModel) -> Self {
         let (v, a, omega) = (robot.v_max_mps, robot.a_max_mps2, robot.omega_max_radps);
         self.robot_radius = robot.radius_m;
-        self.smoother.max_velocity = [v, 0.0, omega];
-        self.smoother.min_velocity = [-v / 4.0, 0.0, -omega];
+        let side = robot.vy_max_mps;
+        self.smoother.max_velocity = [v, side, omega];
+        self.smoother.min_velocity = [robot.v_min_mps, -side, -omega];
         let [_, _, turning] = self.smoother.max_accel;
-        self.smoother.max_accel = [a, 0.0, turning];
-        self.smoother.max_decel = [-a, 0.0, -turning];
+        self.smoother.max_accel = [a, a, turning];
+        self.smoother.max_decel = [-a, -a, -turning];
         self
     }
 

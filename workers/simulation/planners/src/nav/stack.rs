@@ -210,7 +210,7 @@ impl Stack {
             let plan = self.path.ahead(&seen.pose.point(), map);
             let [least_x, _, least_turn] = LEAST_SPEEDS;
             let read = |speed: f64, least: f64| if speed.abs() < least { 0.0 } else { speed };
-            let speed = Twist { vx: read(seen.v, least_x), vy: 0.0, omega: read(seen.omega, least_turn) };
+            let speed = Twist { vx: read(seen.v, least_x), vy: seen.vy, omega: read(seen.omega, least_turn) };
             let command = if plan.is_empty() {
                 Err(NoControl::NoPlan)
             } else {
@@ -350,6 +350,6 @@ impl RobotDriver for Stack {
         self.look(seen, now_s);
         let (wanted, waiting) = self.want(seen, now_s);
         let twist = self.smoother.smooth(Some(wanted), now_s, 1.0 / self.params.controller_frequency);
-        Command { v: twist.vx, omega: twist.omega, gesture: None, waiting }
+        Command { v: twist.vx, vy: twist.vy, omega: twist.omega, gesture: None, waiting }
     }
 }

@@ -72,8 +72,10 @@ fn people_are_seen_by_lidar_alone_unless_a_layer_is_about_them() {
                 time: SimTime::from_nanos(call * 50_000_000),
                 pose,
                 v,
+                vy: 0.0,
                 omega: 0.0,
                 people: &seen,
+                everybody: &Vec::new,
                 doors: &[],
                 lidar: &ranges,
                 cues: Cues::default(),
@@ -167,7 +169,18 @@ fn a_robot_that_is_held_makes_no_progress() {
     for call in 0..240_u64 {
         let time = SimTime::from_nanos(call * 50_000_000);
         let cues = Cues::default();
-        let seen = Observation { time, pose, v: 0.0, omega: 0.0, people: &[], doors: &[], lidar: &lidar, cues };
+        let seen = Observation {
+            time,
+            pose,
+            v: 0.0,
+            vy: 0.0,
+            omega: 0.0,
+            people: &[],
+            everybody: &Vec::new,
+            doors: &[],
+            lidar: &lidar,
+            cues,
+        };
         stack.drive(&seen);
         // The ten seconds begin after the pause at the start.
         let error = stack.errors().last();
@@ -238,7 +251,18 @@ fn among_posts_it_reaches_its_goal_and_touches_none() {
             let lidar = || (0..360).map(range).collect();
             let time = SimTime::from_nanos(call * 50_000_000);
             let cues = Cues::default();
-            let seen = Observation { time, pose, v, omega, people: &[], doors: &[], lidar: &lidar, cues };
+            let seen = Observation {
+                time,
+                pose,
+                v,
+                vy: 0.0,
+                omega,
+                people: &[],
+                everybody: &Vec::new,
+                doors: &[],
+                lidar: &lidar,
+                cues,
+            };
             let command = stack.drive(&seen);
             v += (command.v - v).clamp(-0.05, 0.05);
             omega = command.omega;

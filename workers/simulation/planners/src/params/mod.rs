@@ -28,13 +28,10 @@ use std::cell::RefCell;
 use yaml_serde::Value;
 
 pub use controller::{ControllerServer, ControllerSpec, GoalChecker, PathHandler, ProgressChecker, RppSpec};
-pub use costmap::{
-    CombinationMethod, CostmapServer, GroupsSource, GroupsSpec, InflationSpec, LayerSpec, Nav2CanSpec, ObstacleSpec,
-    OraclePeopleSpec, ProxemicSpec, StaticSpec, UpoSocialSpec,
-};
+pub use costmap::CostmapServer;
 pub use presets::{PRESETS, Preset, preset};
 pub use section::BadValue;
-pub use servers::{BehaviorServer, NavFnSpec, PlannerServer, VelocitySmoother, WaypointFollower};
+pub use servers::{BehaviorServer, PlannerServer, VelocitySmoother, WaypointFollower};
 
 use crate::mppi::Surroundings;
 use section::{Notes, Section};

@@ -208,11 +208,11 @@ impl<'a> Section<'a> {
     }
 
     /// A text that is a choice.
-    pub(super) fn choice<T: Copy>(&mut self, key: &str, into: &mut T, choices: &[(&str, T)]) {
+    pub(super) fn choice<T: Clone>(&mut self, key: &str, into: &mut T, choices: &[(&str, T)]) {
         let names: Vec<String> = choices.iter().map(|(name, _)| format!("`{name}`")).collect();
         let fits = |value: &Value| {
             let found = shown(value);
-            choices.iter().find(|(name, _)| *name == found).map(|(_, choice)| *choice)
+            choices.iter().find(|(name, _)| *name == found).map(|(_, choice)| choice.clone())
         };
         if let Some(found) = self.read(key, &names.join(", "), fits) {
             *into = found;

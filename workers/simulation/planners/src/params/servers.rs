@@ -1,6 +1,7 @@
 //! The other servers: planner, velocity smoother, behaviors, waypoints.
 
 use super::section::{Range, Section};
+use crate::navfn::NavFnParams;
 
 /// `planner_server`.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,39 +9,12 @@ pub struct PlannerServer {
     /// Plans per second that are expected, Hz, above 0. Default 20.
     pub expected_planner_frequency: f64,
     /// The planner.
-    pub planner: NavFnSpec,
+    pub planner: NavFnParams,
 }
 
 impl Default for PlannerServer {
     fn default() -> Self {
-        Self { expected_planner_frequency: 20.0, planner: NavFnSpec::default() }
-    }
-}
-
-/// `nav2_navfn_planner::NavfnPlanner`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NavFnSpec {
-    /// A place so near to the goal will do, m, at least 0. Default 0.5.
-    pub tolerance: f64,
-    /// Whether the wave keeps towards the goal. Default false.
-    pub use_astar: bool,
-    /// Whether plans may lead through unknown cells. Default true.
-    pub allow_unknown: bool,
-    /// Whether the robot arrives as it came. Default false.
-    pub use_final_approach_orientation: bool,
-    /// Steps of a plan as a multiple of the longer side of the map in cells, at least 1. Default 4.
-    pub max_cycles_factor: usize,
-}
-
-impl Default for NavFnSpec {
-    fn default() -> Self {
-        Self {
-            tolerance: 0.5,
-            use_astar: false,
-            allow_unknown: true,
-            use_final_approach_orientation: false,
-            max_cycles_factor: 4,
-        }
+        Self { expected_planner_frequency: 20.0, planner: NavFnParams::default() }
     }
 }
 

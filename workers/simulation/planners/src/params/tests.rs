@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::controller::Controller as _;
-use crate::costmap::{Costmap, FREE};
+use crate::costmap::{Costmap, FREE, LayerParams};
 use crate::mppi::{MotionModel, Mppi, MppiParams};
 
 fn mppi(loaded: &Loaded) -> &MppiParams {
@@ -84,15 +84,15 @@ fn the_preset_of_the_case_study_has_its_values() {
 #[test]
 fn the_presets_about_people_have_layers_about_people() {
     let layers = |name: &str| read(preset(name).unwrap().text).unwrap().params;
-    let social = |layer: &LayerSpec| matches!(layer, LayerSpec::UpoSocial(_));
+    let social = |layer: &LayerParams| matches!(layer, LayerParams::UpoSocial(_));
     let plain = layers("socrates_mppi");
     assert!(!plain.local_costmap.layers.iter().chain(&plain.global_costmap.layers).any(social));
     let aware = layers("ha_mppi");
     assert!(aware.local_costmap.layers.iter().any(social) && aware.global_costmap.layers.iter().any(social));
     let can = layers("nav2can");
-    let groups = |layer: &LayerSpec| matches!(layer, LayerSpec::Groups(groups) if groups.interaction_cost == 253);
+    let groups = |layer: &LayerParams| matches!(layer, LayerParams::Groups(groups) if groups.interaction_cost == 253);
     assert!(can.global_costmap.layers.iter().any(groups) && !can.local_costmap.layers.iter().any(groups));
-    let last = |params: &CostmapServer| matches!(params.layers.last(), Some(LayerSpec::Inflation(_)));
+    let last = |params: &CostmapServer| matches!(params.layers.last(), Some(LayerParams::Inflation(_)));
     assert!([&aware, &can].iter().all(|params| last(&params.local_costmap) && last(&params.global_costmap)));
 }
 
