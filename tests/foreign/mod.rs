@@ -1,8 +1,10 @@
 //! With programs of others: browsers, servers of models, other users, terminals. The second ring of the gate runs these with
 //! everything installed; elsewhere what is missing is left out and named.
 
+mod drivers;
 mod looks;
 mod models;
+mod python;
 mod readers;
 mod strangers;
 mod terminals;

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 use socrates_tests::skip;
 
+use super::python::python;
 use crate::{WAREHOUSE, make, socrates};
 
 /// The reader of the MCAP project, from the package index of Python.
@@ -31,36 +32,7 @@ with open(sys.argv[1], "rb") as file:
 #[track_caller]
 fn reader() -> Option<PathBuf> {
     static PLACE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    skip::installed(PLACE.get_or_init(install).clone())
-}
-
-fn install() -> Result<PathBuf, String> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("mcap-reader");
-    let python = folder.join("bin/python3");
-    let has = || {
-        let asked = Command::new(&python).args(["-c", "import mcap.reader"]).stderr(Stdio::null()).status();
-        asked.is_ok_and(|status| status.success())
-    };
-    if has() {
-        return Ok(python);
-    }
-    if !skip::second_ring() {
-        return Err(format!("`{READER}` is not here; `./gate --foreign` installs it"));
-    }
-    for (program, args) in
-        [(Path::new("python3"), ["-m", "venv"].as_slice()), (&python, &["-m", "pip", "install", "-q", READER])]
-    {
-        let mut command = Command::new(program);
-        command.args(args);
-        if program == Path::new("python3") {
-            command.arg(&folder);
-        }
-        let out = command.stdin(Stdio::null()).output().map_err(|why| format!("{}: {why}", program.display()))?;
-        if !out.status.success() {
-            return Err(String::from_utf8_lossy(&out.stderr).into_owned());
-        }
-    }
-    if has() { Ok(python) } else { Err(format!("`{READER}` was installed and cannot be imported")) }
+    skip::installed(PLACE.get_or_init(|| python("mcap-reader", &[READER], "import mcap.reader")).clone())
 }
 
 /// A finished bundle.

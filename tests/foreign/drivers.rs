@@ -1,0 +1,182 @@
+//! Robots that programs in another language drive: the example planner, a Gymnasium environment, and drivers that fail.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+use socrates_tests::program::{poll, signal, start};
+use socrates_tests::{root, skip};
+
+use super::python::python;
+use crate::{PROGRAM, WAREHOUSE, make, socrates};
+
+const PACKAGES: [&str; 2] = ["eclipse-zenoh==1.10.2", "gymnasium==1.4.0"];
+
+/// A Python that can drive; where there is none, the running test is left out.
+#[track_caller]
+fn driving() -> Option<PathBuf> {
+    static PLACE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
+    skip::installed(PLACE.get_or_init(|| python("drivers", &PACKAGES, "import zenoh, gymnasium")).clone())
+}
+
+fn example(name: &str) -> String {
+    root().join("deploy/python/examples").join(name).display().to_string()
+}
+
+/// A driver of which only what it does with a step is written down.
+fn driver(folder: &Path, act: &str) -> String {
+    let file = folder.join("driver.py");
+    let place = root().join("deploy/python");
+    let text = format!(
+        "import os, sys\nsys.path.insert(0, {:?})\nfrom socrates_env import Command, Driver\n{act}\nDriver('mine', act).run()\n",
+        place.display().to_string()
+    );
+    std::fs::write(&file, text).unwrap();
+    file.display().to_string()
+}
+
+#[test]
+fn the_example_planner_drives_two_scenarios_and_they_are_played_again_without_it() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let requests = folder.path().join("requests");
+    std::fs::create_dir(&requests).unwrap();
+    let office = WAREHOUSE.replace("warehouse", "office").replace("loading dock", "open-plan area");
+    std::fs::write(requests.join("one.toml"), WAREHOUSE).unwrap();
+    std::fs::write(requests.join("two.toml"), office.replace("packing area", "reception area")).unwrap();
+    let drives = format!("{} {}", python.display(), example("planner.py"));
+    let args =
+        ["run", "requests", "--out", "both", "--require", "any", "--planner", "external:example", "--driver", &drives];
+    let run = socrates(folder.path(), "run", &args);
+    assert_eq!(run.code, 0, "{} {}", run.out, run.err);
+    for name in ["one-1", "two-1"] {
+        let bundle = folder.path().join("both").join(name);
+        let report = std::fs::read_to_string(bundle.join("details/reports/external.example-1.json")).unwrap();
+        let report: Value = serde_json::from_str(&report).unwrap();
+        assert!(report["robot_text"].as_str().unwrap().starts_with("arrived"), "{name}: {}", report["robot_text"]);
+        let again = socrates(folder.path(), name, &["simulate", &bundle.display().to_string()]);
+        assert_eq!(again.code, 0, "{}", again.err);
+        assert!(again.out.contains("simulated  external:example seed 1"), "{}", again.out);
+        assert_eq!(again.out.matches("same hash as the bundle").count(), 2, "{}", again.out);
+    }
+}
+
+#[test]
+fn a_driver_that_fails_ends_its_own_run_alone() {
+    let Some(python) = driving() else { return };
+    for (name, act, said) in [
+        ("nan", "def act(step, mission):\n    return float('nan'), 0.0", "`v` is NaN"),
+        ("raises", "def act(step, mission):\n    return 1 / 0, 0.0", "the driver gives up: ZeroDivisionError"),
+        (
+            "dies",
+            "def act(step, mission):\n    os._exit(3) if step.call == 30 else None\n    return 0.3, 0.0",
+            "at 3.00 s: it is gone",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let drives = format!("{} {}", python.display(), driver(folder.path(), act));
+        let more = ["--require", "any", "--planner", "external:mine,reactive", "--driver", &drives];
+        let (run, json) = make(folder.path(), name, WAREHOUSE, &more);
+        assert_eq!(run.code, 0, "{name}: {} {}", run.out, run.err);
+        let runs: Vec<&str> =
+            json["runs"].as_array().unwrap().iter().map(|run| run["planner"].as_str().unwrap()).collect();
+        assert_eq!(runs, ["reference", "reactive"], "{name}");
+        let told = format!("{}{}", run.out, run.err);
+        assert!(told.contains("J-DRIVER") && told.contains(said), "{name}: {told}");
+    }
+}
+
+#[test]
+fn a_driver_is_checked_message_by_message() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let good = format!("{} {}", python.display(), example("planner.py"));
+    let checked = socrates(folder.path(), "good", &["drive", "check", "example", "--driver", &good]);
+    assert_eq!(checked.code, 0, "{} {}", checked.out, checked.err);
+    assert_eq!(
+        (checked.out.matches("ok  ").count(), checked.out.matches("FAILED").count()),
+        (13, 0),
+        "{}",
+        checked.out
+    );
+    // Answers to the step before.
+    let act = "def act(step, mission):\n    return Command(v=float('inf'))";
+    let bad = format!("{} {}", python.display(), driver(folder.path(), act));
+    let checked = socrates(folder.path(), "bad", &["drive", "check", "mine", "--driver", &bad]);
+    assert_eq!(checked.code, 2, "{} {}", checked.out, checked.err);
+    assert!(checked.out.contains("FAILED     answers a step with 1 person"), "{}", checked.out);
+    assert!(checked.err.contains("the driver `mine` fails"), "{}", checked.err);
+}
+
+/// Ends what serves when the test ends.
+struct Served(Child);
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        drop(signal(self.0.id(), "TERM"));
+        drop(self.0.wait());
+    }
+}
+
+const EPISODES: &str = r"
+import sys, warnings
+sys.path[:0] = [sys.argv[1], sys.argv[1] + '/examples']
+from gymnasium.utils.env_checker import check_env
+from socrates_env import SocratesEnv
+from gym_policy import episode, policy
+
+env = SocratesEnv(place=sys.argv[2], lidar=True)
+with warnings.catch_warnings():
+    warnings.simplefilter('error')
+    # The space of positions has no end; that is meant.
+    warnings.filterwarnings('ignore', message='.*infinity.*')
+    check_env(env, skip_render_check=True)
+env.close()
+
+def trail(seed):
+    env = SocratesEnv(place=sys.argv[2])
+    seen, info = env.reset(seed=seed)
+    places, over = [tuple(seen['robot'])], False
+    while not over:
+        seen, _, terminated, truncated, info = env.step(policy(seen))
+        places.append(tuple(seen['robot']))
+        over = terminated or truncated
+    env.close()
+    return places, info['end']
+
+one, ended = trail(5)
+two, _ = trail(5)
+assert len(one) > 100 and one == two, (len(one), len(two))
+assert ended['arrived'], ended
+env = SocratesEnv(place=sys.argv[2])
+try:
+    env.reset(seed=1, options={'scenario': 'nowhere'})
+except ValueError as why:
+    assert 'there is no scenario `nowhere`; served: shop' in str(why), why
+else:
+    raise AssertionError('a scenario that is not served was begun')
+env.close()
+print('fine')
+";
+
+#[test]
+fn the_gymnasium_environment_passes_its_checker_and_the_same_seed_gives_the_same_trajectory() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("shop.toml"), WAREHOUSE).unwrap();
+    let served = start(PROGRAM, &["serve", "shop.toml", "--out", "served"], folder.path(), "serve").unwrap();
+    let _served = Served(served);
+    let endpoint = folder.path().join("served/.socrates/endpoint");
+    poll(|| endpoint.is_file().then_some(())).unwrap();
+    let place = folder.path().join("served");
+    let out = Command::new(python)
+        .args(["-c", EPISODES])
+        .arg(root().join("deploy/python"))
+        .arg(place)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    assert_eq!(String::from_utf8_lossy(&out.stdout).trim(), "fine");
+}
