@@ -155,7 +155,7 @@ pub fn step_bytes(head: &StepHead, seen: &Observation<'_>, hidden: &[SeenPerson]
         numbers.into_iter().for_each(|value| to.real(value));
     }
     to.0.extend(seen.doors.iter().map(|door| u8::from(door.open)));
-    while to.0.len() % 4 != 0 {
+    while !to.0.len().is_multiple_of(4) {
         to.0.push(0);
     }
     lidar.iter().for_each(|range| to.put((*range as f32).to_le_bytes()));

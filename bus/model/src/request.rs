@@ -15,6 +15,8 @@ mod words;
 
 use std::fmt;
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -129,6 +131,9 @@ pub struct RobotRequest {
     /// Where its way begins. Default: as the task says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<PlaceWord>,
+    /// Planners of your own by name: Nav2's stack with a parameter file of yours, relative to the request, or its text.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub nav2: BTreeMap<PlannerName, String>,
     /// Where its way ends. Default: as the task says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<PlaceWord>,
@@ -153,6 +158,7 @@ impl Default for RobotRequest {
             planners: vec![PlannerName::reference()],
             waypoints: Waypoints::Via,
             gestures: Vec::new(),
+            nav2: BTreeMap::new(),
             start: None,
             goal: None,
             via: None,

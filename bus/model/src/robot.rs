@@ -284,10 +284,11 @@ impl FromStr for RobotModel {
 impl<'de> Deserialize<'de> for RobotModel {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         use serde::de::Error as _;
-        match serde_json::Value::deserialize(from)? {
-            serde_json::Value::String(name) => name.parse().map_err(D::Error::custom),
-            table => RobotFile::deserialize(table).map_err(D::Error::custom)?.checked().map_err(D::Error::custom),
+        let value = serde_json::Value::deserialize(from)?;
+        if let Some(name) = value.as_str() {
+            return name.parse().map_err(D::Error::custom);
         }
+        RobotFile::deserialize(value).map_err(D::Error::custom)?.checked().map_err(D::Error::custom)
     }
 }
 
@@ -399,6 +400,6 @@ mod tests {
         let body: RobotModel = serde_json::from_str(text).unwrap();
         assert_eq!((body.v_min_mps, body.vy_max_mps, body.a_max_mps2, body.alpha_max_radps2), (-0.2, 0.0, 1.0, 4.0));
         let omni = text.replace(r#""name": "a""#, r#""name": "a", "kinematics": "omnidirectional""#);
-        assert_eq!(serde_json::from_str::<RobotModel>(&omni).unwrap().vy_max_mps, 0.8);
+        assert!((serde_json::from_str::<RobotModel>(&omni).unwrap().vy_max_mps - 0.8).abs() < 1e-9);
     }
 }

@@ -287,8 +287,12 @@ fn observed(session: u64, call: u32, people: u32, scan: &[f64]) -> Vec<u8> {
         }
     };
     let people: Vec<SeenPerson> = (1..=people).map(person).collect();
-    let door =
-        SeenDoor { id: "door".to_owned(), from: Point::new(9.0, 7.0), to: Point::new(9.0, 8.0), open: call % 2 == 0 };
+    let door = SeenDoor {
+        id: "door".to_owned(),
+        from: Point::new(9.0, 7.0),
+        to: Point::new(9.0, 8.0),
+        open: call.is_multiple_of(2),
+    };
     let head = StepHead { session, call, goal: Point::new(12.0, 7.5), ahead: Point::new(3.8, 7.5) };
     let seen = Observation {
         time: SimTime::at_tick(u64::from(call) * 10),

@@ -7,8 +7,8 @@ use socrates_model::{
     Behaviors, Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request, Run, RunId,
 };
 use socrates_scoring::Evidence;
-use socrates_simulation::Onlooker;
-use socrates_simulation::driving::Outside;
+use socrates_simulation::driving::{Nobody, Outside};
+use socrates_simulation::{Driven, Keeper, Onlooker};
 
 /// Asks per stage, as many as `run` allows.
 const ASKS: u32 = 4;
@@ -140,7 +140,9 @@ pub(crate) fn simulate(
 ) -> Result<Recording, Vec<Fault>> {
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
-    socrates_simulation::simulate(setup, &run.planner)
+    let mut keeper = Keeper::default();
+    socrates_simulation::simulate_into(setup, driven(request, run), &mut Nobody, &mut keeper)?;
+    keeper.recording().ok_or_else(|| vec![ours("the run ended before its first tick".to_owned())])
 }
 
 /// The same; `onlooker` gets everything as it comes, and nothing of it is kept. A driver that no catalog has is looked for
@@ -158,7 +160,12 @@ pub(crate) fn simulate_into(
 ) -> Result<Option<Commands>, Vec<Fault>> {
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
-    socrates_simulation::simulate_into(setup, &run.planner, outside, onlooker)
+    socrates_simulation::simulate_into(setup, driven(request, run), outside, onlooker)
+}
+
+/// Who drives in a run of a request.
+fn driven<'a>(request: &'a Request, run: &'a Run) -> Driven<'a> {
+    Driven { planner: &run.planner, nav2: request.robot.nav2.get(&run.planner).map(String::as_str) }
 }
 
 /// All that the judge may look at in a run of the reference robot.

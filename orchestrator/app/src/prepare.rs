@@ -128,6 +128,7 @@ pub(crate) fn prepare_text(
         complaint.causes = problems.iter().map(|bad| bad.told(shown)).collect();
         complaint
     })?;
+    read_nav2(&mut request, folder)?;
     if let Some(options) = options {
         apply(&mut request, options)?;
     }
@@ -254,9 +255,10 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
     request.run.seeds.get_or_insert_with(|| Seeds::one(options.seed));
     if !options.planner.is_empty() {
         let known = socrates_planners::names();
-        if let Some(planner) =
-            options.planner.iter().find(|planner| planner.external().is_none() && !known.contains(&planner.as_str()))
-        {
+        if let Some(planner) = options.planner.iter().find(|planner| {
+            let own = planner.external().is_some() || request.robot.nav2.contains_key(planner);
+            !own && !known.contains(&planner.as_str())
+        }) {
             return Err(Complaint::input(
                 format!("J-PLANNER `--planner`: there is no planner `{planner}`"),
                 format!("planners: {}", known.join(", ")),
@@ -345,6 +347,26 @@ fn read_pin<T: Serialize + DeserializeOwned>(
         Some(Err(why)) => Err(wrong(why.to_string())),
         None => Err(wrong(format!("it holds no {role}"))),
     }
+}
+
+/// Puts the text of every parameter file of Nav2 where its name stands, and refuses one that no robot could be driven with.
+fn read_nav2(request: &mut Request, folder: &Path) -> Result<(), Complaint> {
+    for (name, text) in &mut request.robot.nav2 {
+        let mut file = "the request".to_owned();
+        if !text.trim().contains('\n') {
+            let path = folder.join(text.trim());
+            file = path.display().to_string();
+            *text = files::text(&path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
+        }
+        socrates_planners::params::read(text).map_err(|bad| {
+            let hint = "Nav2's own nav2_params.yaml is such a file; what it leaves out has Nav2's default";
+            let mut complaint =
+                Complaint::input(format!("`robot.nav2.{name}`: the parameters of {file} cannot be used"), hint);
+            complaint.causes = bad.to_string().lines().map(str::to_owned).collect();
+            complaint
+        })?;
+    }
+    Ok(())
 }
 
 /// The author to ask, and why this one.

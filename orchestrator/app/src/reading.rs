@@ -19,6 +19,13 @@ pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
     for note in &prepared.reading.notes {
         talk.line(&format!("note       {note}"));
     }
+    for (name, text) in &prepared.request.robot.nav2 {
+        if let Ok(socrates_planners::params::Loaded { warning: Some(warning), .. }) =
+            socrates_planners::params::read(text)
+        {
+            talk.line(&format!("note       planner {name}: {warning}"));
+        }
+    }
 }
 
 /// Words of a text without its line breaks.

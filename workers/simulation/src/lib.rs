@@ -21,8 +21,8 @@ pub mod summary;
 #[expect(clippy::print_stdout, reason = "what went wrong in which of many runs is told run by run")]
 mod runs;
 
-pub use simulate::{setup, simulate, simulate_into};
-pub use socrates_engine::Onlooker;
+pub use simulate::{Driven, setup, simulate, simulate_into};
+pub use socrates_engine::{Keeper, Onlooker};
 #[cfg(feature = "mcap")]
 pub use stage::Simulation;
 pub use summary::Summary;

@@ -46,6 +46,21 @@ pub fn setup(
     }
 }
 
+/// Who drives in a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Driven<'a> {
+    /// The planner.
+    pub planner: &'a PlannerName,
+    /// The parameter file of Nav2 that it is, where it is a planner of the request's own.
+    pub nav2: Option<&'a str>,
+}
+
+impl<'a> From<&'a PlannerName> for Driven<'a> {
+    fn from(planner: &'a PlannerName) -> Self {
+        Self { planner, nav2: None }
+    }
+}
+
 /// Runs a setup with a planner of the catalog.
 ///
 /// # Errors
@@ -62,13 +77,15 @@ pub fn simulate(setup: Setup, planner: &PlannerName) -> Result<Recording, Vec<Fa
 ///
 /// # Errors
 /// As [`simulate`]; `J-DRIVER` when the driver outside did not drive.
-pub fn simulate_into(
+pub fn simulate_into<'a>(
     mut setup: Setup,
-    planner: &PlannerName,
+    driven: impl Into<Driven<'a>>,
     outside: &mut dyn Outside,
     onlooker: &mut dyn Onlooker,
 ) -> Result<Option<Commands>, Vec<Fault>> {
-    if planner.external().is_none() && !socrates_planners::names().contains(&planner.as_str()) {
+    let Driven { planner, nav2 } = driven.into();
+    let own = planner.external().is_some() || nav2.is_some();
+    if !own && !socrates_planners::names().contains(&planner.as_str()) {
         return Err(vec![socrates_planners::catalog::unknown(planner.as_str())]);
     }
     setup.planner = planner.clone();
@@ -88,7 +105,11 @@ pub fn simulate_into(
     let field = engine.floor().field().clone();
     let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, groups, seed, encounters };
     let Some(driver) = planner.external() else {
-        let mut driver = make(planner.as_str(), &mission).map_err(|fault| vec![fault])?;
+        let made = nav2.map_or_else(
+            || make(planner.as_str(), &mission),
+            |text| socrates_planners::catalog::nav2(planner.as_str(), text, &mission).map(Some),
+        );
+        let mut driver = made.map_err(|fault| vec![fault])?;
         match driver.as_mut() {
             Some(driver) => engine.play(Some(driver.as_mut()), onlooker),
             None => engine.play(None, onlooker),

@@ -15,7 +15,7 @@ use tokio::runtime::Handle;
 
 use crate::driving::{Drive, Mode, OverBus};
 use crate::pace::Pace;
-use crate::simulate::{setup, simulate_into};
+use crate::simulate::{Driven, setup, simulate_into};
 use crate::summary::Summary;
 
 /// How long the frames of a finished run can still be fetched from the bus.
@@ -44,6 +44,7 @@ impl Simulation {
 struct Inputs {
     setup: socrates_engine::Setup,
     planner: PlannerName,
+    nav2: Option<String>,
     location: Location,
 }
 
@@ -63,7 +64,8 @@ fn inputs(job: &Job) -> Result<Inputs, Failure> {
     })?;
     let id = run.id(&spec.key.scenario);
     let setup = setup(location.clone(), proposal, paths, behaviors, request.as_ref(), id, run.seed);
-    Ok(Inputs { setup, planner: run.planner.clone(), location })
+    let nav2 = request.and_then(|request| request.robot.nav2.get(&run.planner).cloned());
+    Ok(Inputs { setup, planner: run.planner.clone(), nav2, location })
 }
 
 /// Writes the run down while it goes, chunk by chunk.
@@ -177,7 +179,7 @@ impl Stage for Simulation {
     const STAGE: socrates_model::job::Stage = socrates_model::job::Stage::Simulation;
 
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
-        let Inputs { setup, planner, location } = inputs(job)?;
+        let Inputs { setup, planner, nav2, location } = inputs(job)?;
         let run = setup.run.clone();
         let drive = Drive::read(job.setting("drive"), job.setting("drive_patience_s"))?;
         let mut viewers = viewers(job, &run, location, self).await?;
@@ -187,7 +189,8 @@ impl Stage for Simulation {
         let mut outside = OverBus::new(job.live_bus(), Handle::current(), drive, job.cancel().clone());
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
-            let commands = simulate_into(setup, &planner, &mut outside, &mut viewers)?;
+            let driven = Driven { planner: &planner, nav2: nav2.as_deref() };
+            let commands = simulate_into(setup, driven, &mut outside, &mut viewers)?;
             let Viewers { scribe, mut sinks, .. } = viewers;
             let mut done = scribe.outputs(&named)?;
             if let Some(commands) = commands {

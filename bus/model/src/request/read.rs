@@ -268,12 +268,15 @@ impl Door<'_> {
     }
 
     fn robot<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> RobotRequest {
-        let keys = ["model", "planners", "waypoints", "gestures", "start", "goal", "via", "avoid", "return", "does"];
+        let keys =
+            ["model", "planners", "waypoints", "gestures", "nav2", "start", "goal", "via", "avoid", "return", "does"];
         let section = self.section(node, "robot.", &keys);
+        let nav2 = section.get("nav2").map(|node| self.nav2(node)).unwrap_or_default();
         let unset = RobotRequest::default();
         RobotRequest {
             model: self.maybe(&section, "model", RobotModel::ALLOWED).unwrap_or(unset.model),
-            planners: section.get("planners").map_or(unset.planners, |node| self.planners(node)),
+            planners: section.get("planners").map_or(unset.planners, |node| self.planners(node, &nav2)),
+            nav2,
             waypoints: self.maybe(&section, "waypoints", "\"ends\", \"via\" or \"all\"").unwrap_or(unset.waypoints),
             gestures: section.get("gestures").map_or(unset.gestures, |node| self.gestures(node)),
             start: self.place(&section, "start"),
@@ -285,7 +288,26 @@ impl Door<'_> {
         }
     }
 
-    fn planners(&mut self, node: &Node) -> Vec<PlannerName> {
+    /// Planners by name, each with a parameter file of Nav2 or its text.
+    fn nav2(&mut self, node: &Node) -> BTreeMap<PlannerName, String> {
+        const KEY: &str = "robot.nav2";
+        let Kind::Table(_) = &node.kind else {
+            self.bad(KEY, node.at, format!("is {}", node.kind.name()), "a table: { mine = \"nav2_params.yaml\" }");
+            return BTreeMap::new();
+        };
+        let Some(found) = self.typed::<BTreeMap<PlannerName, String>>(KEY, node, "{ mine = \"nav2_params.yaml\" }")
+        else {
+            return BTreeMap::new();
+        };
+        for name in found.keys() {
+            if name.external().is_some() || self.planners.is_some_and(|known| known.contains(&name.as_str())) {
+                self.bad(KEY, node.at, format!("`{name}` is a planner already"), "a name of your own");
+            }
+        }
+        found
+    }
+
+    fn planners(&mut self, node: &Node, nav2: &BTreeMap<PlannerName, String>) -> Vec<PlannerName> {
         const KEY: &str = "robot.planners";
         let Kind::List(nodes) = &node.kind else {
             self.bad(KEY, node.at, format!("is {}", node.kind.name()), "a list: [\"reference\", \"reactive\"]");
@@ -295,7 +317,9 @@ impl Door<'_> {
         for node in nodes {
             let hint = self.planners.map_or_else(|| "the name of a planner".to_owned(), |known| known.join(", "));
             let Some(planner) = self.typed::<PlannerName>(KEY, node, &hint) else { continue };
-            if self.planners.is_some_and(|known| planner.external().is_none() && !known.contains(&planner.as_str())) {
+            if self.planners.is_some_and(|known| {
+                planner.external().is_none() && !nav2.contains_key(&planner) && !known.contains(&planner.as_str())
+            }) {
                 let (found, hint) = (format!("there is no planner `{planner}`"), format!("planners: {hint}"));
                 self.problems.push(BadRequest {
                     code: FaultCode::JPlanner,

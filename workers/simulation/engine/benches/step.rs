@@ -44,7 +44,7 @@ impl RobotDriver for Straight {
     fn drive(&mut self, seen: &Observation<'_>) -> Command {
         let turn = socrates_model::geometry::wrap_angle(std::f64::consts::FRAC_PI_4 - seen.pose.yaw);
         let near = seen.people.iter().any(|person| (person.at - seen.pose.point()).norm() < 0.9);
-        Command { v: if near { 0.0 } else { 0.4 }, omega: turn, gesture: None, waiting: near }
+        Command { v: if near { 0.0 } else { 0.4 }, omega: turn, waiting: near, ..Command::default() }
     }
 }
 

@@ -89,7 +89,14 @@ fn rpp(mission: &Mission) -> Stack {
 
 /// Nav2 with a preset.
 fn preset(name: &str, mission: &Mission) -> Result<Box<dyn RobotDriver>, Fault> {
-    let text = params::preset(name).ok_or_else(|| unknown(name))?.text;
+    nav2(name, params::preset(name).ok_or_else(|| unknown(name))?.text, mission)
+}
+
+/// Nav2's stack with the text of a parameter file.
+///
+/// # Errors
+/// `J-PLANNER` with everything that is wrong with it.
+pub fn nav2(name: &str, text: &str, mission: &Mission) -> Result<Box<dyn RobotDriver>, Fault> {
     let wrong = |why: String| Fault::new(FaultCode::JPlanner, Where::key(format_args!("planner {name}")), why);
     let loaded = params::read(text).map_err(|bad| wrong(bad.to_string()))?;
     Ok(Box::new(nav2::stack(&loaded.params, mission).map_err(|bad| wrong(bad.to_string()))?))

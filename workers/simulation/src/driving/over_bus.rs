@@ -144,6 +144,9 @@ impl Outside for OverBus {
     }
 }
 
+/// A question on its way.
+type Asked = JoinHandle<Result<Vec<u8>, LinkError>>;
+
 /// One run of a driver over the bus.
 struct Remote {
     name: String,
@@ -164,7 +167,7 @@ struct Remote {
     /// For how long no answer came, one after the other.
     silent: Duration,
     /// The question that is not answered yet, and its number; mode `free` alone.
-    asked: Option<(u32, JoinHandle<Result<Vec<u8>, LinkError>>)>,
+    asked: Option<(u32, Asked)>,
     fault: Option<Fault>,
 }
 

@@ -102,6 +102,8 @@ pub fn run(mut setup: Setup, planner: &str) -> Recording {
             (_, nodes) => nodes.iter().filter_map(spot).collect(),
         },
         script: setup.proposal.robot.script.clone(),
+        groups: Vec::new(),
+        seed: 1,
         encounters: setup
             .paths
             .encounters
