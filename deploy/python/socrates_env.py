@@ -9,9 +9,10 @@ One file; it needs `pip install eclipse-zenoh`, and for `SocratesEnv` also `pip 
 
     Driver("mine", act).run()
 
+    export PYTHONPATH=deploy/python              # the folder of this file
     socrates run my.toml --planner external:mine --driver "python3 my_planner.py"
 
-The bytes are documented in docs/wire.md; this file reads and writes nothing else.
+`examples/` beside this file holds a planner in thirty lines and a policy in the environment. The bytes are documented in docs/wire.md; this file reads and writes nothing else.
 """
 
 import json
@@ -71,6 +72,8 @@ def read_step(data):
 
 def command_bytes(session, call, command):
     """The bytes of a `Command`, of (v, omega), or of (v, vy, omega)."""
+    if isinstance(command, (dict, str)) or not hasattr(command, "__iter__"):
+        raise ValueError(f"a command is (v, omega), (v, vy, omega) or a Command, not {command!r}")
     if not isinstance(command, Command):
         numbers = [float(number) for number in command]
         if len(numbers) == 2:
@@ -79,7 +82,10 @@ def command_bytes(session, call, command):
             command = Command(*numbers)
         else:
             raise ValueError(f"a command is (v, omega), (v, vy, omega) or a Command, not {len(numbers)} numbers")
-    code = GESTURES.index(command.gesture or "NONE")
+    gesture = command.gesture or "NONE"
+    if gesture not in GESTURES:
+        raise ValueError(f"gesture {gesture!r}; allowed: {', '.join(GESTURES)}")
+    code = GESTURES.index(gesture)
     numbers = (float(command.v), float(command.vy), float(command.omega))
     return _COMMAND.pack(b"SOCC", VERSION, code, session, call, 1 if command.waiting else 0, *numbers)
 
@@ -101,8 +107,8 @@ def find(place=None, namespace=None):
             with open(file, encoding="utf-8") as text:
                 lines = text.read().split("\n")
             return lines[0], lines[1]
-    if os.path.isdir(place):
-        raise ValueError(f"nothing is being made in the folder {place!r}")
+    if "/" not in place or os.path.isdir(place):
+        raise ValueError(f"{place!r} is no folder in which something is made or served, and no endpoint such as tcp/127.0.0.1:7447")
     return place, namespace
 
 
@@ -245,6 +251,8 @@ class Pilot(Driver):
 
     def tell(self, command):
         """Answers the step that was given last."""
+        if self._query is None:
+            raise RuntimeError("no step waits for a command: the run is over, or none was begun; call reset first")
         query, at = self._query, self._at
         self._query = None
         with query:
@@ -288,12 +296,15 @@ else:
         plan 0.8 m ahead) relative to the robot (ahead, to the left),
         `people` [most, 7] (ahead, to the left, velocity ahead, to the left, radius, in sight, here) nearest first, and
         `lidar` [360] where it is asked for. Action: (v, omega), of an omnidirectional robot (v, vy, omega), within the robot's
-        limits. `reset(seed=…, options={"scenario": NAME})` chooses the run; without a seed a random one is drawn from the
+        limits. An episode ends some seconds after the robot came
+        within 0.5 m of its goal (`info["end"]["arrived"]`), when it stood for 45 s (`stuck`), or when its time is over
+        (truncated). `reset(seed=…, options={"scenario": NAME})` chooses the run; without a seed a random one is drawn from the
         environment's own generator. `reward(before, command, after, info)` is yours; the default is the progress toward the
         goal, m, less 1 for each step within 0.2 m of a person.
         """
 
         metadata = {"render_modes": []}
+        # One process, one environment: a zenoh session does not outlive a fork. AsyncVectorEnv wants context="spawn".
 
         def __init__(self, scenario=None, *, place=None, namespace=None, name=None, most=8, lidar=False, rate_hz=10.0,
                      omnidirectional=False, v_max=1.0, omega_max=2.0, reward=None):
@@ -328,7 +339,9 @@ else:
                 raise RuntimeError(f"the run {run} ended before it began: {told['reason']}")
             self._last = told
             mission = self.pilot.missions.get(told.session, {})
-            return self._observed(told), {"run": run, "mission": mission, "step": told}
+            # The same seed gives the same words: the number of the session is left out.
+            mission = {key: value for key, value in mission.items() if key != "session"}
+            return self._observed(told), {"run": run, "mission": mission, "step": told._replace(session=0)}
 
         def step(self, action):
             action = numpy.clip(numpy.asarray(action, dtype=float), self.action_space.low, self.action_space.high)
@@ -339,10 +352,11 @@ else:
             kind, told = self.pilot.step()
             if kind == "step":
                 self._last = told
-                info = {"step": told}
+                info = {"step": told._replace(session=0)}
                 return self._observed(told), float(self.reward(before, command, told, info)), False, False, info
             # What was seen last stays in sight: the run has no later state.
-            info = {"step": before, "end": told}
+            told = {key: value for key, value in told.items() if key != "session"}
+            info = {"step": before._replace(session=0), "end": told}
             done = told["reason"] != "time"
             return self._observed(before), float(self.reward(before, command, before, info)), done, not done, info
 

@@ -73,7 +73,7 @@ fn everything_wrong_with_a_request_is_told_at_once_with_line_and_column_before_a
     let words = [
         "has 5 problems",
         &model,
-        "`hal` is not a robot model; allowed: linorobot2, turtlebot4",
+        "`hal` is not a robot model; allowed: linorobot2, turtlebot3_burger",
         &planner,
         "J-PLANNER",
         "telepathy",

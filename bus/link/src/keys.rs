@@ -132,6 +132,15 @@ pub fn drive_claims(driver: &str) -> String {
     format!("drive/{}/claim/*", chunk(driver))
 }
 
+/// Presence tokens of every driver.
+pub const DRIVERS_ALIVE: &str = "drive/*/claim/*";
+
+/// Name of the driver named by its presence token; `None` for another key.
+#[must_use]
+pub fn driver_of(key: &str) -> Option<&str> {
+    key.strip_prefix("drive/")?.split_once("/claim/").map(|(name, _)| name)
+}
+
 /// Free text as one chunk of a key: everything that is not a letter, digit, `.`, `_` or `-` becomes `%` and hex digits.
 #[must_use]
 pub fn chunk(text: &str) -> String {
@@ -300,6 +309,13 @@ mod tests {
         for bad in ["", "a/b", "a*", "ä"] {
             assert!(Namespace::new(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_presence_token_names_its_driver() {
+        assert_eq!(driver_of(&drive_claim("mine", "7")), Some("mine"));
+        assert!(covers(DRIVERS_ALIVE, &drive_claim("mine", "7")).unwrap());
+        assert_eq!(driver_of("drive/mine/step"), None);
     }
 
     #[test]

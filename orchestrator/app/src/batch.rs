@@ -86,7 +86,8 @@ impl Card {
             reports,
             recording: bundle.runs.first().map(|(recording, _)| recording),
         });
-        let runs = index::Rows::of(Scenario { request, location: &location.name, path: name }, reports);
+        let scenario = Scenario { request, location: &location.name, path: name };
+        let runs = index::Rows::of(scenario, reports, &bundle.manifest.failed);
         let likeness = Likeness::of(&bundle.proposal, &bundle.paths, &location);
         Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs })
     }

@@ -21,7 +21,8 @@ use socrates_draw::StageRow;
 use socrates_model::job::{Artifact, Item};
 use socrates_model::wire::ScenarioStatus;
 use socrates_model::{
-    Behaviors, Digest, Location, Paths, PlannerName, Proposal, Reading, Recording, Report, Request, Role, Run, Verdict,
+    Behaviors, Digest, Fault, Location, Paths, PlannerName, Proposal, Reading, Recording, Report, Request, Role, Run,
+    Verdict,
 };
 use socrates_stream::csv::joined;
 
@@ -72,8 +73,20 @@ pub(crate) struct Manifest {
     pub(crate) verdict: Verdict,
     /// Runs, the reference first.
     pub(crate) runs: Vec<RunEntry>,
+    /// Runs that were wanted and have no result.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) failed: Vec<FailedRun>,
     /// Digest of every file of the bundle but this one and the provenance.
     pub(crate) files: BTreeMap<String, Digest>,
+}
+
+/// A run without a result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FailedRun {
+    /// Which.
+    pub(crate) run: Run,
+    /// Why: the faults of its last attempt.
+    pub(crate) faults: Vec<Fault>,
 }
 
 /// A finished bundle.
@@ -154,7 +167,7 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>)
 
 /// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
 fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
-    let Made { reading, proposal, paths, behaviors, runs } = collect::made(prepared, past)?;
+    let Made { reading, proposal, paths, behaviors, runs, failed } = collect::made(prepared, past)?;
     let Some((recording, report)) = runs.first().map(|run| &run.judged) else { return Err(missing(Role::Report)) };
     let verdict = report.verdict;
     let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
@@ -190,6 +203,7 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
         wish: wish(prepared, seed),
         verdict,
         runs: entries,
+        failed,
         files: out.files.clone(),
     };
     let (request, location) = (prepared.request.clone(), prepared.location.clone());

@@ -6,6 +6,7 @@ use socrates_model::{Report, ScenarioEnd};
 use socrates_scoring::metrics::{KEY_FIGURES, key_figures};
 use socrates_stream::csv::joined;
 
+use crate::bundle::FailedRun;
 use crate::exit::Complaint;
 use crate::files;
 
@@ -34,8 +35,8 @@ pub(crate) struct Scenario<'a> {
 pub(crate) struct Rows(Vec<Vec<String>>);
 
 impl Rows {
-    /// A row per run.
-    pub(crate) fn of(scenario: Scenario<'_>, reports: &[Report]) -> Self {
+    /// A row per run, those without a result last.
+    pub(crate) fn of(scenario: Scenario<'_>, reports: &[Report], failed: &[FailedRun]) -> Self {
         let rows = reports.iter().map(|report| {
             let mut row = row(
                 scenario,
@@ -47,7 +48,14 @@ impl Rows {
             }));
             row
         });
-        Self(rows.collect())
+        let without = failed.iter().map(|FailedRun { run, faults }| {
+            let told: Vec<String> = faults.iter().map(ToString::to_string).collect();
+            let cells = [run.planner.as_str(), &run.seed.to_string(), FAILED, &told.join(" · ")];
+            let mut row = row(scenario, cells);
+            row.extend(KEY_FIGURES.iter().map(|_| String::new()));
+            row
+        });
+        Self(rows.chain(without).collect())
     }
 }
 

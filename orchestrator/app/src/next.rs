@@ -35,6 +35,10 @@ struct After {
     looked_at: bool,
     /// Whether a film lies in the bundle.
     filmed: bool,
+    /// The driver that was started with the run, with the flag.
+    driver: String,
+    /// Code of the first run without a result.
+    failed: Option<&'static str>,
 }
 
 /// The line after a run; `file` is the request that was run, where it was a file.
@@ -64,13 +68,18 @@ pub(crate) fn after_run(options: &RunOptions, bundle: &Bundle, file: Option<&Pat
         fault: report.and_then(|report| Some(report.repair.as_ref()?.faults.first()?.code.code())),
         misread: !bundle.reading.missing().is_empty(),
         looked_at: options.ask,
+        driver: options
+            .driver
+            .as_ref()
+            .map_or_else(String::new, |line| format!(" --driver {}", shell(Path::new(line)))),
+        failed: bundle.manifest.failed.first().and_then(|run| Some(run.faults.first()?.code.code())),
         filmed: std::fs::read_dir(&bundle.dir).into_iter().flatten().filter_map(Result::ok).any(films),
     })
 }
 
 /// The first of these commands that fits.
 fn command(after: &After) -> String {
-    let After { request, bundle, author, seed, .. } = after;
+    let After { request, bundle, author, seed, driver, .. } = after;
     let realised = after.verdict == Verdict::Realised;
     let tested = after.planners.iter().any(|planner| !planner.is_reference() && !planner.is_no_robot());
     let why = after.fault.map_or_else(String::new, |code| format!("   # why: socrates explain {code}"));
@@ -79,9 +88,13 @@ fn command(after: &After) -> String {
             after.misread && !after.looked_at,
             format!("socrates run {request} --ask{author}   # not everything was understood: say it in other words"),
         ),
+        (after.failed.is_some(), format!("socrates explain {}", after.failed.unwrap_or_default())),
         (!realised, format!("socrates run {request} --seed {}{author}{why}", seed.saturating_add(1))),
         (!tested, format!("socrates run {request} --planner reactive --seeds 1..5{author}")),
-        (after.seeds < 2, format!("socrates run {request} --planner {} --seeds 1..5{author}", robots(&after.planners))),
+        (
+            after.seeds < 2,
+            format!("socrates run {request} --planner {} --seeds 1..5{author}{driver}", robots(&after.planners)),
+        ),
         (!after.filmed, format!("socrates video {bundle}")),
     ];
     let fits = tries.into_iter().find(|(fits, _)| *fits).map(|(_, command)| command);
@@ -123,6 +136,8 @@ mod tests {
             misread: false,
             looked_at: false,
             filmed: false,
+            driver: String::new(),
+            failed: None,
         }
     }
 
@@ -136,6 +151,11 @@ mod tests {
         let five = After { seeds: 5, ..one };
         assert_eq!(command(&five), "socrates video runs/my-1");
         assert_eq!(command(&After { filmed: true, ..five }), "socrates cite runs/my-1");
+        let driver = " --driver 'python3 mine.py'".to_owned();
+        let driven = After { planners: vec!["external:mine".parse().unwrap()], driver, ..after() };
+        let again = "socrates run my.toml --planner external:mine --seeds 1..5 --driver 'python3 mine.py'";
+        assert_eq!(command(&driven), again);
+        assert_eq!(command(&After { failed: Some("J-DRIVER"), ..driven }), "socrates explain J-DRIVER");
     }
 
     #[test]

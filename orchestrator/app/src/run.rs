@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_model::Verdict;
+use socrates_model::{Run, Verdict};
 use socrates_store::Reader;
 
 use crate::bundle::{self, Bundle};
@@ -220,13 +220,21 @@ fn finish(
         let verdict = if bundle.runs.len() > 1 { format!(" · {}", report.verdict) } else { String::new() };
         talk.line(&format!("robot      {}{seed}: {}{verdict}", report.planner, report.robot_text));
     }
+    for failed in &bundle.manifest.failed {
+        let Run { planner, seed } = &failed.run;
+        let told: Vec<String> = failed.faults.iter().map(ToString::to_string).collect();
+        talk.line(&format!("robot      {planner} seed {seed}: NO RESULT · {}", told.join(" · ")));
+    }
     // The first line is that of the first run; of several, this one says how often it happened.
     let played = || bundle.runs.iter().filter(|(_, report)| !report.planner.is_no_robot());
-    if played().count() > 1 {
+    let lost = bundle.manifest.failed.len();
+    if played().count() + lost > 1 {
         let count = |wanted: Verdict| played().filter(|(_, report)| report.verdict == wanted).count();
         let (realised, late) = (count(Verdict::Realised), count(Verdict::RealisedLate));
         let of_them = if late > 0 { format!(", {late} of them late") } else { String::new() };
-        talk.line(&format!("runs       realised in {} of {}{of_them}", realised + late, played().count()));
+        let without = if lost > 0 { format!(", {lost} without a result") } else { String::new() };
+        let all = played().count() + lost;
+        talk.line(&format!("runs       realised in {} of {all}{of_them}{without}", realised + late));
     }
     if bundle.proposal.author.is_rules() {
         talk.line("author     offline: written by rules, not by a language model");
@@ -237,9 +245,12 @@ fn finish(
     talk.result(&json!({
         "bundle": dir, "verdict": report.verdict, "stages": past.map(told), "metrics": values(report), "reading": bundle.reading,
         "author": bundle.proposal.author,
+        "failed": bundle.manifest.failed,
         "runs": bundle.manifest.runs.iter().map(|run| json!({ "planner": run.planner, "seed": run.seed, "verdict": run.verdict, "recording_hash": run.recording_hash })).collect::<Vec<_>>(),
     }));
-    if options.require.is_met(report.verdict == Verdict::Realised) { Code::Ok } else { Code::NotRealised }
+    // A run that was wanted and has no result is never met, whatever the others were.
+    let is_met = lost == 0 && options.require.is_met(report.verdict == Verdict::Realised);
+    if is_met { Code::Ok } else { Code::NotRealised }
 }
 
 /// Stages for the result object.

@@ -29,6 +29,8 @@ const LEAVE_LIMIT: Duration = Duration::from_secs(3);
 const START_LIMIT: Duration = Duration::from_secs(20);
 /// Deaths of a child in a minute after which it is not started again at once.
 const SUDDEN: u32 = 3;
+/// A driver that ends sooner than this has not driven.
+const EARLY: Duration = Duration::from_secs(1);
 /// First pause before a child that dies again and again is started again; it doubles with every death.
 const PAUSE: Duration = Duration::from_millis(50);
 /// Longest such pause.
@@ -274,6 +276,7 @@ async fn keep(
     restarts: usize,
 ) {
     let mut deaths: VecDeque<Instant> = VecDeque::new();
+    let mut begun = Instant::now();
     // Waiting for a child closes its standard input, unless somebody else holds the pipe.
     let mut pipe = child.stdin.take();
     loop {
@@ -303,8 +306,14 @@ async fn keep(
         let how = status.map_or_else(|why| why.to_string(), |status| status.to_string());
         let words = last_words(&mut child).await;
         let why = words.as_ref().map(|words| words.what.clone()).unwrap_or_default();
+        let early = role.foreign && now.duration_since(begun) < EARLY;
         let gave_up = if stuck {
             words
+        } else if early && deaths.len() > 1 {
+            // Started twice, it ended twice before it can have driven: what it said stands above.
+            let what =
+                format!("the driver `{} {}` ends by itself ({how})", role.program.display(), role.args.join(" "));
+            Some(Complaint::input(what, "start it by hand to see why; it has to stay until its standard input closes"))
         } else if deaths.len() > restarts {
             let often = format!("the {} process died {} times in a minute, last with {how}", role.name, deaths.len());
             Some(ours(&if why.is_empty() { often } else { format!("{often}: {why}") }))
@@ -322,6 +331,7 @@ async fn keep(
         }
         match spawn(&role, &[]) {
             Ok(next) => {
+                begun = Instant::now();
                 child = next;
                 pipe = child.stdin.take();
             }

@@ -30,6 +30,7 @@ use crate::plain;
 /// Codes that are provoked elsewhere, with the test that holds their pages to what it found.
 const ELSEWHERE: &[(FaultCode, &str)] = &[
     (FaultCode::PPerson, "orchestrator/app/src/ask/tests.rs: a person sends something back in a conversation"),
+    (FaultCode::JDriver, "workers/simulation/src/driving/tests.rs: a driver answers what is no number"),
     (FaultCode::JPanic, "workers/kit/tests/worker.rs: a stage panics"),
     (FaultCode::JBlob, "workers/kit/tests/worker.rs: an input is not where it should be"),
 ];

@@ -6,7 +6,7 @@ use socrates_model::job::{Artifact, Item, Stage};
 use socrates_model::wire::{JobStatus, ScenarioStatus};
 use socrates_model::{Behaviors, JobState, Paths, Proposal, Reading, Recording, Report, Role, Run};
 
-use super::{Fetch, Past, missing, ours};
+use super::{FailedRun, Fetch, Past, missing, ours};
 use crate::exit::Complaint;
 use crate::prepare::Prepared;
 
@@ -30,6 +30,8 @@ pub(super) struct Made {
     pub(super) behaviors: Behaviors,
     /// Runs, the reference first.
     pub(super) runs: Vec<MadeRun>,
+    /// Runs that have no result, and why.
+    pub(super) failed: Vec<FailedRun>,
 }
 
 /// Reads every artifact that the bundle is made of.
@@ -58,7 +60,22 @@ pub(super) fn made(prepared: &Prepared, past: &Past<'_>) -> Result<Made, Complai
         paths: parse(Role::Paths, &text(Role::Paths, Stage::Paths)?)?,
         behaviors: parse(Role::Behaviors, &text(Role::Behaviors, Stage::Behaviors)?)?,
         runs: runs(status, fetch)?,
+        failed: failed(status),
     })
+}
+
+/// Every run that was wanted and has no result, with the faults of its last attempt.
+fn failed(status: &ScenarioStatus) -> Vec<FailedRun> {
+    let jobs = || status.jobs.iter().filter(|job| matches!(job.key.stage, Stage::Simulation | Stage::Scoring));
+    let items: BTreeSet<&Item> = jobs().map(|job| &job.key.item).collect();
+    let unjudged = items.into_iter().filter(|item| newest(status, Stage::Scoring, item).is_none());
+    let told = |item: &Item| {
+        let run = item.run()?.clone();
+        let last =
+            jobs().filter(|job| job.key.item == *item && !job.faults.is_empty()).max_by_key(|job| job.key.revision)?;
+        Some(FailedRun { run, faults: last.faults.clone() })
+    };
+    unjudged.filter_map(told).collect()
 }
 
 /// Every run that was judged.

@@ -141,12 +141,16 @@ fn every_planner_reaches_the_goal_on_an_empty_floor() {
     }
 }
 
+/// Planners that see nobody.
+const SEES_NOBODY: &[&str] = &["straight_line"];
+
 /// Planners that by design stay behind somebody who stands in the way; each has a test of its own.
 const STAYS_BEHIND: &[&str] = &[];
 
 #[test]
 fn every_planner_goes_round_somebody_who_stands_in_the_way() {
-    let passes = |name: &&str| *name != PlannerName::NO_ROBOT && !STAYS_BEHIND.contains(name);
+    let passes =
+        |name: &&str| *name != PlannerName::NO_ROBOT && !STAYS_BEHIND.contains(name) && !SEES_NOBODY.contains(name);
     for name in names().into_iter().filter(passes) {
         let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
         let way = drive(driver.as_mut(), &|_| vec![person(9.0, 3.05, 0.0, 0.0)], 50.0);
@@ -158,6 +162,14 @@ fn every_planner_goes_round_somebody_who_stands_in_the_way() {
         }
         assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "{name} ends at {:?}", way.last().unwrap().0);
     }
+}
+
+#[test]
+fn the_straight_line_sees_nobody() {
+    let mut driver = make("straight_line", &mission(vec![])).unwrap().unwrap();
+    let way = drive(driver.as_mut(), &|_| vec![person(9.0, 3.05, 0.0, 0.0)], 50.0);
+    assert!(way.iter().all(|(pose, _)| (pose.y - 3.0).abs() < 0.05));
+    assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4);
 }
 
 #[test]

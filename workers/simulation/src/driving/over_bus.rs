@@ -57,27 +57,36 @@ impl OverBus {
         let mission = serde_json::to_vec(&mission).map_err(|why| failed(format!("the mission: {why}")))?;
         let patience = self.drive.patience;
         let broken = |why: LinkError| failed(why.to_string());
-        let mut claims = self.bus.watch_alive(&keys::drive_claims(wanted.driver)).await.map_err(broken)?;
-        let mut there = Vec::new();
+        let mut claims = self.bus.watch_alive(keys::DRIVERS_ALIVE).await.map_err(broken)?;
+        let (mut there, mut others) = (Vec::new(), std::collections::BTreeSet::new());
         let first = async {
-            loop {
-                match claims.next().await {
-                    Some((claim, true)) => return Some(claim),
-                    Some((_, false)) => {}
-                    None => return None,
+            while let Some((claim, alive)) = claims.next().await {
+                match keys::driver_of(&claim) {
+                    Some(name) if alive && name == wanted.driver => return Some(claim),
+                    Some(name) if alive => drop(others.insert(name.to_owned())),
+                    Some(_) | None => {}
                 }
             }
+            None
         };
-        let seconds = patience.as_secs();
-        let nobody = format!(
-            "no driver of this name came within {seconds} s; it declares the token `{}`",
-            keys::drive_claims(wanted.driver)
-        );
-        there.push(timeout(patience, first).await.ok().flatten().ok_or_else(|| failed(nobody))?);
+        let Some(first) = timeout(patience, first).await.ok().flatten() else {
+            let token = keys::drive_claims(wanted.driver);
+            let nobody =
+                format!("no driver of this name came within {} s; it declares the token `{token}`", patience.as_secs());
+            let others: Vec<String> = others.into_iter().map(|name| format!("`{name}`")).collect();
+            return Err(failed(match others.as_slice() {
+                [] => nobody,
+                names => format!("{nobody}; there are drivers called {}", names.join(", ")),
+            }));
+        };
+        there.push(first);
         let key = keys::drive_mission(wanted.driver);
         let answer = self.bus.query(&key, mission, patience).await.map_err(|why| failed(told(&why)))?;
         // Every token that was there before has come before the answer.
         while let Ok(Some((claim, alive))) = timeout(Duration::ZERO, claims.next()).await {
+            if keys::driver_of(&claim) != Some(wanted.driver) {
+                continue;
+            }
             there.retain(|other| *other != claim);
             if alive {
                 there.push(claim);

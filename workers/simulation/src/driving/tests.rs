@@ -164,6 +164,16 @@ fn every_way_of_failing_ends_the_run_with_a_fault_that_says_which() {
 }
 
 #[test]
+fn the_page_of_the_fault_shows_one_that_was_really_found() {
+    let answer: Answer = |step, nth| {
+        let omega = if nth < 32 { 0.0 } else { f64::NAN };
+        Some(command_bytes(step.head.session, step.head.call, &Command { omega, ..Command::default() }))
+    };
+    let fault = run(MISSION, answer, Drive::default()).unwrap_err();
+    assert!(FaultCode::JDriver.page().contains(&fault.to_string()), "{fault}");
+}
+
+#[test]
 fn a_driver_that_never_comes_or_of_which_there_are_two_is_named() {
     let runtime = runtime();
     let bus = Arc::new(MemoryBus::new());
@@ -172,6 +182,9 @@ fn a_driver_that_never_comes_or_of_which_there_are_two_is_named() {
         nobody.contains("no driver of this name came within 1 s") && nobody.contains("drive/mine/claim/*"),
         "{nobody}"
     );
+    let _other = runtime.block_on(guest(&bus, "theirs", MISSION, steady));
+    let nobody = played(&bus, runtime.handle(), patient(1)).unwrap_err().message.to_string();
+    assert!(nobody.ends_with("there are drivers called `theirs`"), "{nobody}");
     let _guest = runtime.block_on(guest(&bus, "mine", MISSION, steady));
     let _second = runtime.block_on(bus.declare_alive(&keys::drive_claim("mine", "2"))).unwrap();
     let two = played(&bus, runtime.handle(), patient(1)).unwrap_err().message.to_string();
