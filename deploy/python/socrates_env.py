@@ -15,6 +15,7 @@ One file; it needs `pip install eclipse-zenoh`, and for `SocratesEnv` also `pip 
 `examples/` beside this file holds a planner in thirty lines and a policy in the environment. The bytes are documented in docs/wire.md; this file reads and writes nothing else.
 """
 
+import atexit
 import json
 import math
 import os
@@ -123,7 +124,10 @@ def connect(endpoint):
         ("transport/shared_memory/enabled", "false"),
     ):
         config.insert_json5(key, value)
-    return zenoh.open(config)
+    session = zenoh.open(config)
+    # Its threads would keep a program alive whose main part has ended, be it by an exception.
+    getattr(threading, "_register_atexit", atexit.register)(session.close)
+    return session
 
 
 def _ends_with_input():
