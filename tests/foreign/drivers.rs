@@ -93,6 +93,28 @@ fn a_driver_that_fails_ends_its_own_run_alone() {
 }
 
 #[test]
+fn a_driver_that_dies_in_every_run_is_there_again_for_the_next_and_one_that_never_drives_is_not() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let act = "def act(step, mission):\n    os._exit(3) if step.call == 5 else None\n    return 0.3, 0.0";
+    let drives = format!("{} {}", python.display(), driver(folder.path(), act));
+    let more = ["--require", "any", "--seeds", "1..4", "--planner", "external:mine", "--driver", &drives];
+    let (run, json) = make(folder.path(), "dies", WAREHOUSE, &more);
+    assert_eq!(run.code, 3, "{} {}", run.out, run.err);
+    let failed: Vec<&str> = json["failed"].as_array().unwrap().iter().map(|run| run["run"].as_str().unwrap()).collect();
+    assert_eq!(failed, ["external.mine-1", "external.mine-2", "external.mine-3", "external.mine-4"]);
+    let gone =
+        |run: &Value| run["faults"][0]["message"].as_str().is_some_and(|why| why.contains("at 0.50 s: it is gone"));
+    assert!(json["failed"].as_array().unwrap().iter().all(gone), "{}", json["failed"]);
+
+    let none = format!("{} nowhere.py", python.display());
+    let more = ["--require", "any", "--planner", "external:mine", "--driver", &none];
+    let (run, _) = make(folder.path(), "none", WAREHOUSE, &more);
+    assert_eq!(run.code, 2, "{} {}", run.out, run.err);
+    assert!(run.err.contains("ends by itself (exit status: 2)"), "{}", run.err);
+}
+
+#[test]
 fn a_driver_is_checked_message_by_message() {
     let Some(python) = driving() else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -135,30 +135,11 @@ impl From<AgentId> for String {
     }
 }
 
-macro_rules! text_id {
-    ($(#[$doc:meta])* $name:ident, $what:literal, $max:literal, $allowed:literal, $ok:expr) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
-        #[serde(try_from = "String", into = "String")]
-        #[schemars(with = "String")]
-        pub struct $name(String);
-
+/// What every name written as text has: printing, reading by its `new`, and the way to and from a `String`.
+macro_rules! text_traits {
+    ($name:ident) => {
         impl $name {
-            /// Reads the id.
-            ///
-            /// # Errors
-            /// [`BadId`] when the text is empty, too long or holds a character that is not allowed.
-            pub fn new(text: impl Into<String>) -> Result<Self, BadId> {
-                let text = text.into();
-                let fits: fn(char) -> bool = $ok;
-                if !text.is_empty() && text.chars().count() <= $max && text.chars().all(fits) {
-                    Ok(Self(text))
-                } else {
-                    Err(BadId { what: $what, found: text.chars().take(80).collect(), allowed: $allowed })
-                }
-            }
-
-            /// The id as text.
+            /// The name as text.
             #[must_use]
             pub fn as_str(&self) -> &str {
                 &self.0
@@ -190,6 +171,35 @@ macro_rules! text_id {
                 id.0
             }
         }
+    };
+}
+pub(crate) use text_traits;
+
+macro_rules! text_id {
+    ($(#[$doc:meta])* $name:ident, $what:literal, $max:literal, $allowed:literal, $ok:expr) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+        #[serde(try_from = "String", into = "String")]
+        #[schemars(with = "String")]
+        pub struct $name(String);
+
+        impl $name {
+            /// Reads the id.
+            ///
+            /// # Errors
+            /// [`BadId`] when the text is empty, too long or holds a character that is not allowed.
+            pub fn new(text: impl Into<String>) -> Result<Self, BadId> {
+                let text = text.into();
+                let fits: fn(char) -> bool = $ok;
+                if !text.is_empty() && text.chars().count() <= $max && text.chars().all(fits) {
+                    Ok(Self(text))
+                } else {
+                    Err(BadId { what: $what, found: text.chars().take(80).collect(), allowed: $allowed })
+                }
+            }
+        }
+
+        text_traits!($name);
     };
 }
 

@@ -12,7 +12,7 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::ids::BadId;
+use crate::ids::{BadId, text_traits};
 
 /// A planner under test, as requests and reports name it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -47,12 +47,6 @@ impl PlannerName {
             let allowed = "1 to 40 of a-z A-Z 0-9 . _ -, or `external:` and the name of a driver";
             Err(BadId { what: "planner name", found: text.chars().take(80).collect(), allowed })
         }
-    }
-
-    /// The name as text.
-    #[must_use]
-    pub fn as_str(&self) -> &str {
-        &self.0
     }
 
     /// The name of the driver, if it drives from outside.
@@ -104,31 +98,7 @@ impl PlannerName {
     }
 }
 
-impl fmt::Display for PlannerName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl FromStr for PlannerName {
-    type Err = BadId;
-    fn from_str(text: &str) -> Result<Self, BadId> {
-        Self::new(text)
-    }
-}
-
-impl TryFrom<String> for PlannerName {
-    type Error = BadId;
-    fn try_from(text: String) -> Result<Self, BadId> {
-        Self::new(text)
-    }
-}
-
-impl From<PlannerName> for String {
-    fn from(name: PlannerName) -> Self {
-        name.0
-    }
-}
+text_traits!(PlannerName);
 
 #[cfg(test)]
 mod tests {

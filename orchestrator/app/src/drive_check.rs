@@ -1,24 +1,20 @@
 //! `drive check`: plays the simulation's part to a driver, message by message, and says what it does with each.
 
-use std::process::Stdio;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
-use socrates_link::{Bus, LinkError, keys};
 use socrates_model::driver::{EndMessage, MissionAnswer, MissionDoor, MissionMap, MissionMessage};
-use socrates_model::lockstep::{
-    self, HEAD_BYTES, MAP_PART_CELLS, PERSON_BYTES, StepHead, map_bytes, read_command, step_bytes,
-};
+use socrates_model::lockstep::{self, HEAD_BYTES, PERSON_BYTES, StepHead, read_command, step_bytes};
 use socrates_model::robot::RobotFile;
 use socrates_model::{
     Cues, Digest, HumanId, Observation, PlannerName, Point, Pose, RobotModel, RunId, SeenDoor, SeenPerson, SimTime,
     Vector,
 };
-use tokio::process::{Child, Command};
-use tokio::time::timeout;
+use socrates_simulation::driving::{Line, told};
 
 use crate::config::Config;
+use crate::driver_process::DriverCommand;
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::process::client;
@@ -64,13 +60,17 @@ pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> R
         }
         None => {
             let router = Router::open(folder.path(), config, "run").await?;
-            let child = options.command.as_deref().map(|line| start(line, &router.endpoint)).transpose()?;
+            let child = options
+                .command
+                .as_deref()
+                .map(|line| DriverCommand::read(line, &router.endpoint, "run")?.start())
+                .transpose()?;
             (Arc::clone(&router.bus), Some(router), child)
         }
     };
     let name = PlannerName::new(format!("external:{}", options.driver));
     let name = name.map_err(|bad| Complaint::input(bad.to_string(), "a driver is named without `external:`"))?;
-    let findings = Exam { bus, driver: options.driver.clone(), name }.all().await;
+    let findings = Exam { line: Line::new(bus, &options.driver, PATIENCE), name }.all().await;
     let failed = findings.iter().filter(|finding| finding.outcome.is_err()).count();
     for Finding { what, outcome } in &findings {
         match outcome {
@@ -90,35 +90,9 @@ pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> R
     Err(Complaint::input(what, "docs/wire.md has every message").with_code(Code::Input))
 }
 
-/// Starts the driver; it ends with the check.
-fn start(line: &str, endpoint: &str) -> Result<Child, Complaint> {
-    let mut words = shlex::split(line).unwrap_or_default().into_iter();
-    let program = words.next().ok_or_else(|| {
-        let hint = "write --driver \"python3 my_planner.py\", for example";
-        Complaint::input(format!("`--driver {line}` is no command"), hint)
-    })?;
-    let child = Command::new(&program)
-        .args(words)
-        .env("SOCRATES_ENDPOINT", endpoint)
-        .env("SOCRATES_NAMESPACE", "run")
-        .env("SOCRATES_TIED", "1")
-        .stdin(Stdio::piped())
-        .stdout(Stdio::null())
-        .stderr(Stdio::inherit())
-        .kill_on_drop(true)
-        .spawn();
-    child.map_err(|why| {
-        Complaint::input(
-            format!("`{program}` cannot be started: {why}"),
-            "name a program of the search path, or its path",
-        )
-    })
-}
-
 /// The driver under examination.
 struct Exam {
-    bus: Arc<dyn Bus>,
-    driver: String,
+    line: Line,
     name: PlannerName,
 }
 
@@ -130,10 +104,15 @@ impl Exam {
             findings.push(Finding { what, outcome });
             went
         };
-        if !note("declares its claim", self.claims().await) {
-            return findings;
-        }
-        let answer = self.mission(1, PATIENCE).await;
+        let claims = match self.line.claims().await {
+            Ok(claims) => claims,
+            Err(why) => {
+                note("declares its claim", Err(why));
+                return findings;
+            }
+        };
+        let answer = self.mission(1).await;
+        note("declares its claim", claims.alone().await);
         let told = answer.as_ref().map(|answer| format!("{} steps a second", answer.rate_hz)).map_err(Clone::clone);
         if !note("answers its mission", told) {
             return findings;
@@ -147,7 +126,7 @@ impl Exam {
         note("answers a step with 1 person", step(1, 1, 1, false).await);
         note("answers a step with 50 people", step(1, 2, 50, false).await);
         note("skips what a later version adds", step(1, 3, 2, true).await);
-        let second = self.mission(2, PATIENCE).await.map(|_| String::new());
+        let second = self.mission(2).await.map(|_| String::new());
         if note("takes a second run beside the first", second) {
             let both = async {
                 step(2, 0, 1, false).await?;
@@ -164,39 +143,7 @@ impl Exam {
         findings
     }
 
-    async fn claims(&self) -> Result<String, String> {
-        let mut claims =
-            self.bus.watch_alive(&keys::drive_claims(&self.driver)).await.map_err(|why| why.to_string())?;
-        let first = async {
-            while let Some((claim, alive)) = claims.next().await {
-                if alive {
-                    return Some(claim);
-                }
-            }
-            None
-        };
-        let missing =
-            || format!("no token `{}` came within {} s", keys::drive_claims(&self.driver), PATIENCE.as_secs());
-        timeout(PATIENCE, first).await.ok().flatten().ok_or_else(missing)
-    }
-
-    async fn ask(&self, key: &str, body: Vec<u8>, patience: Duration) -> Result<Vec<u8>, String> {
-        self.bus.query(key, body, patience).await.map_err(|why| match why {
-            LinkError::NoReply { .. } => "no answer: the query was dropped, or nobody serves the key".to_owned(),
-            LinkError::Timeout { .. } => format!("no answer within {} s", patience.as_secs()),
-            LinkError::TooLarge { .. }
-            | LinkError::BadKey { .. }
-            | LinkError::Encode { .. }
-            | LinkError::Decode { .. }
-            | LinkError::Incompatible { .. }
-            | LinkError::Refused { .. }
-            | LinkError::Absent { .. }
-            | LinkError::Closed
-            | LinkError::Transport { .. } => why.to_string(),
-        })
-    }
-
-    async fn mission(&self, session: u64, patience: Duration) -> Result<MissionAnswer, String> {
+    async fn mission(&self, session: u64) -> Result<MissionAnswer, String> {
         let cells = vec![0_u8; SIDE * SIDE];
         let message = MissionMessage {
             socrates: "mission".to_owned(),
@@ -221,33 +168,24 @@ impl Exam {
                 digest: Digest::of(&cells),
             },
         };
-        let body = serde_json::to_vec(&message).map_err(|why| why.to_string())?;
-        let answer = self.ask(&keys::drive_mission(&self.driver), body, patience).await?;
-        MissionAnswer::read(&answer).map_err(|bad| bad.to_string())
+        self.line.mission(&message).await
     }
 
     async fn map(&self, session: u64) -> Result<String, String> {
-        let cells = vec![0_u8; SIDE * SIDE];
-        let mut first = 0;
-        for part in cells.chunks(MAP_PART_CELLS) {
-            let body = map_bytes(session, first, cells.len() as u64, part);
-            self.ask(&keys::drive_mission(&self.driver), body, PATIENCE).await?;
-            first += part.len() as u64;
-        }
-        Ok(format!("{first} cells"))
+        self.line.map(session, &[0; SIDE * SIDE]).await.map(|()| format!("{} cells", SIDE * SIDE))
     }
 
     async fn step(&self, session: u64, call: u32, people: u32, longer: bool, scan: &[f64]) -> Result<String, String> {
         let bytes = observed(session, call, people, scan);
         let bytes = if longer { lengthened(&bytes) } else { bytes };
-        let answer = self.ask(&keys::drive_step(&self.driver), bytes, PATIENCE).await?;
+        let answer = self.line.step(bytes, PATIENCE).await.map_err(|why| told(&why))?;
         let command = read_command(&answer, session, call).map_err(|bad| bad.to_string())?;
         Ok(format!("{:.2} m/s, {:.2} rad/s", command.v, command.omega))
     }
 
     /// Something has to come back, be it that the driver gives up.
     async fn garbage(&self) -> Result<String, String> {
-        let answer = self.ask(&keys::drive_step(&self.driver), b"SOCOx".to_vec(), PATIENCE).await?;
+        let answer = self.line.step(b"SOCOx".to_vec(), PATIENCE).await.map_err(|why| told(&why))?;
         let told = read_command(&answer, 0, 0).map_or_else(|bad| bad.to_string(), |_| "a command".to_owned());
         Ok(told.chars().take(60).collect())
     }
@@ -267,8 +205,7 @@ impl Exam {
     async fn end(&self, session: u64) -> Result<String, String> {
         let message =
             EndMessage { socrates: "end".to_owned(), session, reason: "done".to_owned(), time_s: 1.0, arrived: true };
-        let body = serde_json::to_vec(&message).map_err(|why| why.to_string())?;
-        self.ask(&keys::drive_mission(&self.driver), body, PATIENCE).await.map(|_| String::new())
+        self.line.end(&message, PATIENCE).await.map(|()| String::new())
     }
 }
 

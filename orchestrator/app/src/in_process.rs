@@ -163,7 +163,7 @@ pub(crate) fn simulate_into(
     socrates_simulation::simulate_into(setup, driven(request, run), outside, onlooker)
 }
 
-/// Who drives in a run of a request.
+/// The driver of a run of a request.
 fn driven<'a>(request: &'a Request, run: &'a Run) -> Driven<'a> {
     Driven { planner: &run.planner, nav2: request.robot.nav2.get(&run.planner).map(String::as_str) }
 }

@@ -33,6 +33,7 @@ mod cores;
 pub mod cost;
 pub mod dev;
 pub mod drive_check;
+mod driver_process;
 pub mod evaluate;
 pub mod exit;
 pub mod explain;

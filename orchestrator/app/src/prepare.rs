@@ -44,6 +44,8 @@ pub(crate) struct Prepared {
     pub(crate) injected: BTreeMap<String, String>,
     /// Style of the questions, as settings of the author's jobs; empty for the default.
     pub(crate) style: BTreeMap<String, String>,
+    /// What is to be said of its parameter files.
+    pub(crate) notes: Vec<String>,
     /// Whether a person looks at it while it is made.
     pub(crate) looked_at: bool,
     /// What the program was built from.
@@ -128,7 +130,7 @@ pub(crate) fn prepare_text(
         complaint.causes = problems.iter().map(|bad| bad.told(shown)).collect();
         complaint
     })?;
-    read_nav2(&mut request, folder)?;
+    let notes = read_nav2(&mut request, folder)?;
     if let Some(options) = options {
         apply(&mut request, options)?;
     }
@@ -190,6 +192,7 @@ pub(crate) fn prepare_text(
         pins,
         injected,
         style,
+        notes,
         looked_at: options.is_some_and(|options| options.ask),
         build: config.program().build.clone(),
         keep_answers: config.truth("author.keep_answers"),
@@ -349,8 +352,10 @@ fn read_pin<T: Serialize + DeserializeOwned>(
     }
 }
 
-/// Puts the text of every parameter file of Nav2 where its name stands, and refuses one that no robot could be driven with.
-fn read_nav2(request: &mut Request, folder: &Path) -> Result<(), Complaint> {
+/// Puts the text of every parameter file of Nav2 where its name stands, and refuses one that no robot could be driven with. Gives
+/// back what is to be said of them.
+fn read_nav2(request: &mut Request, folder: &Path) -> Result<Vec<String>, Complaint> {
+    let mut notes = Vec::new();
     for (name, text) in &mut request.robot.nav2 {
         let mut file = "the request".to_owned();
         if !text.trim().contains('\n') {
@@ -358,15 +363,16 @@ fn read_nav2(request: &mut Request, folder: &Path) -> Result<(), Complaint> {
             file = path.display().to_string();
             *text = files::text(&path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
         }
-        socrates_planners::params::read(text).map_err(|bad| {
+        let loaded = socrates_planners::params::read(text).map_err(|bad| {
             let hint = "Nav2's own nav2_params.yaml is such a file; what it leaves out has Nav2's default";
             let mut complaint =
                 Complaint::input(format!("`robot.nav2.{name}`: the parameters of {file} cannot be used"), hint);
             complaint.causes = bad.to_string().lines().map(str::to_owned).collect();
             complaint
         })?;
+        notes.extend(loaded.warning.map(|warning| format!("planner {name}: {warning}")));
     }
-    Ok(())
+    Ok(notes)
 }
 
 /// The author to ask, and why this one.

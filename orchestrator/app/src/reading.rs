@@ -16,15 +16,8 @@ pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
     for problem in &prepared.reading.problems {
         talk.line(&format!("problem    {problem}"));
     }
-    for note in &prepared.reading.notes {
+    for note in prepared.reading.notes.iter().chain(&prepared.notes) {
         talk.line(&format!("note       {note}"));
-    }
-    for (name, text) in &prepared.request.robot.nav2 {
-        if let Ok(socrates_planners::params::Loaded { warning: Some(warning), .. }) =
-            socrates_planners::params::read(text)
-        {
-            talk.line(&format!("note       planner {name}: {warning}"));
-        }
     }
 }
 

@@ -218,17 +218,17 @@ impl Server {
             let Some(scene) = scenes.get(index) else { return Ok(()) };
             let place = (&scene.request, &scene.location);
             let id = run.id(&scene.id);
-            let played = match kept {
-                None => in_process::simulate_into(place, scene.made.clone(), id, &run, &mut outside, &mut Nothing),
-                Some(folder) => {
-                    let path = folder.join(format!("{called}.mcap"));
-                    let mut scribe = Scribe::new(Some(&path), Some(&scene.location));
-                    let played =
-                        in_process::simulate_into(place, scene.made.clone(), id, &run, &mut outside, &mut scribe);
-                    scribe.finish().map_err(|why| format!("{called}: {}", why.what))?;
-                    played
-                }
+            let path = kept.map(|folder| folder.join(format!("{called}.mcap")));
+            let mut scribe = path.as_deref().map(|path| Scribe::new(Some(path), Some(&scene.location)));
+            let mut nothing = Nothing;
+            let onlooker: &mut dyn Onlooker = match &mut scribe {
+                Some(scribe) => scribe,
+                None => &mut nothing,
             };
+            let played = in_process::simulate_into(place, scene.made.clone(), id, &run, &mut outside, onlooker);
+            if let Some(scribe) = scribe {
+                scribe.finish().map_err(|why| format!("{called}: {}", why.what))?;
+            }
             ended.fetch_add(1, Ordering::Relaxed);
             played.map(|_commands| ()).map_err(|faults| {
                 let told: Vec<String> = faults.iter().map(ToString::to_string).collect();

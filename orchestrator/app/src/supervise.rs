@@ -4,7 +4,6 @@
 //! the supervisor leaves nothing running; a child that dies is started again, unless it says that this would not help.
 
 use std::collections::VecDeque;
-use std::os::fd::AsFd as _;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::Arc;
@@ -14,12 +13,13 @@ use socrates_link::{Bus, keys};
 use socrates_model::job::Stage;
 use tempfile::TempDir;
 use tokio::io::AsyncReadExt as _;
-use tokio::process::{Child, Command};
+use tokio::process::{Child, ChildStdin, Command};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
 use crate::config::Config;
+use crate::driver_process::DriverCommand;
 use crate::exit::{Code, Complaint};
 use crate::router::{ENDPOINT_FILE, Router, SOCKET, read_endpoint};
 
@@ -29,8 +29,6 @@ const LEAVE_LIMIT: Duration = Duration::from_secs(3);
 const START_LIMIT: Duration = Duration::from_secs(20);
 /// Deaths of a child in a minute after which it is not started again at once.
 const SUDDEN: u32 = 3;
-/// A driver that ends sooner than this has not driven.
-const EARLY: Duration = Duration::from_secs(1);
 /// First pause before a child that dies again and again is started again; it doubles with every death.
 const PAUSE: Duration = Duration::from_millis(50);
 /// Longest such pause.
@@ -87,10 +85,6 @@ struct Role {
     program: PathBuf,
     /// Whether the environment says nothing of [`ARENAS`].
     few_arenas: bool,
-    /// Whether it is a program of the user's, which prints what it likes: its words go where ours go that are no results.
-    foreign: bool,
-    /// Variables of its environment.
-    variables: Vec<(&'static str, String)>,
 }
 
 impl Supervisor {
@@ -112,7 +106,11 @@ impl Supervisor {
             crew.add(role, report.clone(), restarts)?;
         }
         if let Some(line) = driven_by {
-            workers.add(driver(line, &endpoint, namespace)?, report.clone(), restarts)?;
+            let command = DriverCommand::read(line, &endpoint, namespace)?;
+            let claims = bus.watch_alive(keys::DRIVERS_ALIVE).await.map_err(|why| ours(&why.to_string()))?;
+            let child = command.start()?;
+            let kept = command.keep(child, claims, workers.stop.subscribe(), report.clone());
+            workers.keepers.push(tokio::spawn(kept));
         }
         let work = work.to_path_buf();
         let mut supervisor = Self { bus, work, _socket: socket, workers, orchestrator, gave_up };
@@ -173,8 +171,7 @@ fn roles(
         let mut args = own;
         args.extend_from_slice(config.passed_on());
         args.extend(["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned));
-        let program = program.to_path_buf();
-        roles.push(Role { name, args, first, program, few_arenas, foreign: false, variables: Vec::new() });
+        roles.push(Role { name, args, first, program: program.to_path_buf(), few_arenas });
     };
     role(
         "orchestrator".to_owned(),
@@ -216,42 +213,17 @@ fn spawn(role: &Role, more: &[String]) -> Result<Child, Complaint> {
     if role.few_arenas {
         command.env(ARENAS.0, ARENAS.1);
     }
-    let said = if role.foreign { to_stderr()? } else { Stdio::piped() };
     command
         .args(&role.args)
         .args(more)
-        .envs(role.variables.iter().map(|(name, value)| (name, value)))
         .stdin(Stdio::piped())
-        .stdout(said)
+        .stdout(Stdio::piped())
         .stderr(Stdio::inherit())
         .kill_on_drop(true)
         // Ctrl-C reaches the supervisor alone, which then asks the children to leave.
         .process_group(0)
         .spawn()
         .map_err(|why| ours(&format!("the {} process cannot be started: {why}", role.name)))
-}
-
-/// Where a program of the user's prints: beside our own words, so that results stay alone on standard output.
-fn to_stderr() -> Result<Stdio, Complaint> {
-    let copy = std::io::stderr().as_fd().try_clone_to_owned();
-    copy.map(Stdio::from).map_err(|why| ours(&format!("standard error cannot be shared: {why}")))
-}
-
-/// The driver that a run was asked to start.
-fn driver(line: &str, endpoint: &str, namespace: &str) -> Result<Role, Complaint> {
-    let mut words = shlex::split(line).unwrap_or_default().into_iter();
-    let Some(program) = words.next() else {
-        let hint = "write --driver \"python3 my_planner.py\", for example; quotation marks come in pairs";
-        return Err(Complaint::input(format!("`--driver {line}` is no command"), hint));
-    };
-    let variables = vec![
-        ("SOCRATES_ENDPOINT", endpoint.to_owned()),
-        ("SOCRATES_NAMESPACE", namespace.to_owned()),
-        ("SOCRATES_TIED", "1".to_owned()),
-    ];
-    let (args, first) = (words.collect(), Vec::new());
-    let name = "driver".to_owned();
-    Ok(Role { name, args, first, program: PathBuf::from(program), few_arenas: false, foreign: true, variables })
 }
 
 /// What a child said last: why it ended.
@@ -267,6 +239,16 @@ fn pause(deaths: usize) -> Duration {
     if again == 0 { Duration::ZERO } else { PAUSE.saturating_mul(1 << again.min(10)).min(LONGEST_PAUSE) }
 }
 
+/// Ends a child: closing its standard input asks it to leave.
+pub(crate) async fn leave(mut child: Child, pipe: Option<ChildStdin>, name: &str) {
+    drop(pipe);
+    if tokio::time::timeout(LEAVE_LIMIT, child.wait()).await.is_err()
+        && let Err(why) = child.kill().await
+    {
+        tracing::warn!(role = name, %why, "a child could not be ended");
+    }
+}
+
 /// Keeps one child alive until told to stop.
 async fn keep(
     role: Role,
@@ -276,7 +258,6 @@ async fn keep(
     restarts: usize,
 ) {
     let mut deaths: VecDeque<Instant> = VecDeque::new();
-    let mut begun = Instant::now();
     // Waiting for a child closes its standard input, unless somebody else holds the pipe.
     let mut pipe = child.stdin.take();
     loop {
@@ -288,14 +269,7 @@ async fn keep(
             }
         };
         let Some(status) = ended else {
-            // Closing its standard input asks the child to leave.
-            drop(pipe);
-            if tokio::time::timeout(LEAVE_LIMIT, child.wait()).await.is_err()
-                && let Err(why) = child.kill().await
-            {
-                tracing::warn!(role = role.name, %why, "a child could not be ended");
-            }
-            return;
+            return leave(child, pipe, &role.name).await;
         };
         let now = Instant::now();
         deaths.push_back(now);
@@ -306,14 +280,8 @@ async fn keep(
         let how = status.map_or_else(|why| why.to_string(), |status| status.to_string());
         let words = last_words(&mut child).await;
         let why = words.as_ref().map(|words| words.what.clone()).unwrap_or_default();
-        let early = role.foreign && now.duration_since(begun) < EARLY;
         let gave_up = if stuck {
             words
-        } else if early && deaths.len() > 1 {
-            // Started twice, it ended twice before it can have driven: what it said stands above.
-            let what =
-                format!("the driver `{} {}` ends by itself ({how})", role.program.display(), role.args.join(" "));
-            Some(Complaint::input(what, "start it by hand to see why; it has to stay until its standard input closes"))
         } else if deaths.len() > restarts {
             let often = format!("the {} process died {} times in a minute, last with {how}", role.name, deaths.len());
             Some(ours(&if why.is_empty() { often } else { format!("{often}: {why}") }))
@@ -331,7 +299,6 @@ async fn keep(
         }
         match spawn(&role, &[]) {
             Ok(next) => {
-                begun = Instant::now();
                 child = next;
                 pipe = child.stdin.take();
             }

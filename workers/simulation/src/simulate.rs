@@ -46,7 +46,7 @@ pub fn setup(
     }
 }
 
-/// Who drives in a run.
+/// The driver of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Driven<'a> {
     /// The planner.

@@ -174,6 +174,22 @@ impl Obstacle {
     }
 }
 
+/// Before a shut door on its way a robot of this radius stands so far off, m, and looks for one so far ahead, m.
+const DOOR_M: f64 = 0.7;
+const DOOR_AHEAD_M: f64 = 1.2;
+/// So near to the end of its way a robot has arrived, m.
+const ARRIVED_M: f64 = 0.12;
+
+/// Whether a robot that has come to `s` along a way stands before a shut door on it.
+pub(crate) fn waits_at_door(seen: &Observation<'_>, way: &Polyline, s: f64, robot_radius_m: f64) -> bool {
+    closed_door_ahead(seen, way, s, DOOR_AHEAD_M).is_some_and(|left| left < robot_radius_m + DOOR_M)
+}
+
+/// Whether a robot that has come to `s` along a way is at its end.
+pub(crate) fn is_at_end(way: &Polyline, at: &Point, s: f64) -> bool {
+    way.end().is_some_and(|end| (end - at).norm() < ARRIVED_M) && s > way.length_m() - 2.0 * ARRIVED_M
+}
+
 /// Distance along a way, from `s` on, to the first closed door on it, m.
 pub(crate) fn closed_door_ahead(seen: &Observation<'_>, way: &Polyline, s: f64, reach_m: f64) -> Option<f64> {
     let mut gone = 0.0;

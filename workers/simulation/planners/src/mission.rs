@@ -24,7 +24,7 @@ pub struct Mission {
     pub waypoints: Vec<Point>,
     /// The robot's script; only `reference` plays it (gestures are made by the engine).
     pub script: Vec<RobotRule>,
-    /// Who belongs to which group. Only planners whose parameters ask for it look here.
+    /// The group that each human belongs to. Only planners whose parameters ask for it look here.
     pub groups: Vec<(HumanId, u32)>,
     /// The seed of the run, for planners that draw.
     pub seed: u64,

@@ -32,7 +32,8 @@ fn stack_params(params: &Nav2Params, mission: &Mission, robot_radius: f64) -> St
     let corner = |[x, y]: &[f64; 2]| socrates_model::Point::new(*x, *y);
     StackParams {
         controller_frequency: server.controller_frequency,
-        failure_tolerance: server.failure_tolerance,
+        // Nav2's -1: for ever.
+        failure_tolerance: if server.failure_tolerance < 0.0 { f64::INFINITY } else { server.failure_tolerance },
         robot_radius,
         footprint: params.local_costmap.footprint.iter().map(corner).collect(),
         global_costmap: costmap(&params.global_costmap, mission),
@@ -132,6 +133,13 @@ mod tests {
     use super::*;
     use crate::params::{PRESETS, read};
     use crate::tests::mission;
+
+    #[test]
+    fn a_controller_without_a_command_is_borne_for_ever_where_the_file_says_so() {
+        let text = "controller_server: { ros__parameters: { failure_tolerance: -1.0 } }";
+        let params = read(text).unwrap().params;
+        assert!(stack_params(&params, &mission(vec![]), 0.25).failure_tolerance.is_infinite());
+    }
 
     #[test]
     fn every_preset_makes_a_stack_with_its_own_layers_and_rate() {

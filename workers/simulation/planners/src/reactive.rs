@@ -5,14 +5,12 @@
 use socrates_model::{Command, Observation, Point, Polyline, RobotDriver, RobotModel};
 
 use crate::detour;
-use crate::ground::{Ground, Obstacle, STANDING_MPS, closed_door_ahead};
+use crate::ground::{Ground, Obstacle, STANDING_MPS, is_at_end, waits_at_door};
 use crate::mission::Mission;
 use crate::pursuit::{pursue, safe_share};
 
 /// Calls per second.
 const RATE_HZ: f64 = 20.0;
-/// So near to the end of its way it has arrived, m.
-const ARRIVED_M: f64 = 0.12;
 /// Its place on its way is looked for so far on, m.
 const ON_M: f64 = 1.5;
 /// Gap to whoever stands that it keeps, surface to surface, m; who walks is given what `safe_share` asks for.
@@ -101,11 +99,13 @@ impl RobotDriver for Reactive {
         self.ground.look(seen);
         self.s = self.s.max(self.route.project_within(&at, self.s, self.s + ON_M).0);
         let stand = Command::default();
-        let Some(end) = self.route.end() else { return stand };
-        if (end - at).norm() < ARRIVED_M && self.s > self.route.length_m() - 2.0 * ARRIVED_M {
+        if self.route.end().is_none() {
+            return stand;
+        }
+        if is_at_end(&self.route, &at, self.s) {
             return Command { waiting: self.complete, ..stand };
         }
-        if closed_door_ahead(seen, &self.route, self.s, 1.2).is_some_and(|left| left < self.robot.radius_m + 0.7) {
+        if waits_at_door(seen, &self.route, self.s, self.robot.radius_m) {
             return Command { waiting: true, ..stand };
         }
         self.go_round(seen, &at);

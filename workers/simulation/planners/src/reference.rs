@@ -5,7 +5,7 @@
 use socrates_model::{Command, Door, Gesture, HumanId, Observation, Point, Polyline, RobotDriver, RobotModel};
 
 use crate::detour;
-use crate::ground::{Ground, STANDING_MPS, closed_door_ahead, obstacles};
+use crate::ground::{Ground, STANDING_MPS, closed_door_ahead, obstacles, waits_at_door};
 use crate::mission::Mission;
 use crate::overtaking::{self, Overtaking};
 use crate::patience::Patience;
@@ -319,7 +319,7 @@ impl RobotDriver for Reference {
             return command;
         }
         // A closed door on the way: stops before it and waits for it to open.
-        if closed_door_ahead(seen, &self.route, self.s, 1.2).is_some_and(|left| left < self.robot.radius_m + 0.7) {
+        if waits_at_door(seen, &self.route, self.s, self.robot.radius_m) {
             return rest;
         }
         if let Some(command) = wish.overtake.and_then(|whom| self.pass(seen, whom)) {

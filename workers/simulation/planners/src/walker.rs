@@ -10,21 +10,17 @@ use socrates_crowd::{Goal, Params, Person, forces_on};
 use socrates_model::geometry::wrap_angle;
 use socrates_model::{Command, Observation, Point, Polyline, RobotDriver, RobotModel, Vector};
 
-use crate::ground::{Ground, closed_door_ahead};
+use crate::ground::{Ground, is_at_end, waits_at_door};
 use crate::mission::Mission;
 use crate::pursuit::pursue;
 
 /// Calls per second.
 const RATE_HZ: f64 = 20.0;
 const DT_S: f64 = 1.0 / RATE_HZ;
-/// So near to the end of its way it has arrived, m.
-const ARRIVED_M: f64 = 0.12;
 /// Its place on its way is looked for so far back and on, m: a crowd may carry it along or hold it.
 const AROUND_M: (f64, f64) = (0.5, 3.0);
 /// Points ahead on its way that it may head for, farthest first, m: the farthest that nothing stands between counts.
 const AHEAD_M: [f64; 5] = [2.0, 1.2, 0.7, 0.4, 0.2];
-/// Before a shut door it stands this far off, beside its own radius, m.
-const DOOR_M: f64 = 0.7;
 /// Walls are felt from so far, in so many sectors, as by people.
 const WALL_REACH_M: f64 = 3.0;
 const SECTORS: usize = 8;
@@ -32,8 +28,8 @@ const SECTORS: usize = 8;
 const TURNS_M: f64 = 0.05;
 /// Turning rate for each radian off the wished direction, 1/s.
 const TURN_PER_S: f64 = 2.4;
-/// It looks ahead so far for a shut door, m.
-const DOOR_AHEAD_M: f64 = 1.2;
+/// Nearer to the end of its way than this it comes to rest, m.
+const REST_M: f64 = 0.06;
 
 /// How a robot goes by people.
 #[derive(Debug)]
@@ -105,7 +101,7 @@ impl Walker {
             radius_m: self.robot.radius_m + side,
             speed_mps: self.robot.v_max_mps,
             // Only the end of the way is a place to come to rest at.
-            goal: Some(Goal { at: *target, radius_m: if last { ARRIVED_M / 2.0 } else { 0.0 } }),
+            goal: Some(Goal { at: *target, radius_m: if last { REST_M } else { 0.0 } }),
             group: None,
         };
         let mut people = vec![me.clone()];
@@ -169,11 +165,10 @@ impl RobotDriver for Walker {
         self.s = self.route.progress(&at, self.s, AROUND_M).0;
         let stand = Command::default();
         let Some(end) = self.route.end() else { return stand };
-        if (end - at).norm() < ARRIVED_M && self.s > self.route.length_m() - 2.0 * ARRIVED_M {
+        if is_at_end(&self.route, &at, self.s) {
             return Command { waiting: self.complete, ..stand };
         }
-        let door = closed_door_ahead(seen, &self.route, self.s, DOOR_AHEAD_M);
-        if door.is_some_and(|left| left < self.robot.radius_m + DOOR_M) {
+        if waits_at_door(seen, &self.route, self.s, self.robot.radius_m) {
             return Command { waiting: true, ..stand };
         }
         let target = self.target(&at);

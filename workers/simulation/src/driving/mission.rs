@@ -14,7 +14,7 @@ fn at(point: &Point) -> [f64; 2] {
 }
 
 /// Cells of a map as they are told, row by row from the lower left: 0 free, 100 occupied, 255 unknown.
-pub(crate) fn cells(grid: &Grid) -> Vec<u8> {
+pub(super) fn cells(grid: &Grid) -> Vec<u8> {
     let told = |cell: &Cell| match cell {
         Cell::Free => 0,
         Cell::Occupied => 100,
@@ -24,11 +24,17 @@ pub(crate) fn cells(grid: &Grid) -> Vec<u8> {
     grid.cells.chunks(grid.width.max(1)).rev().flatten().map(told).collect()
 }
 
-/// The message for this run.
+/// The message for this run, with its plan and the cells of its map.
 ///
 /// # Errors
 /// `J-DRIVER` for a name that no driver can have.
-pub fn message(wanted: &Wanted<'_>, session: u64, mode: Mode) -> Result<MissionMessage, socrates_model::Fault> {
+pub(super) fn message(
+    wanted: &Wanted<'_>,
+    session: u64,
+    mode: Mode,
+    plan: &[Point],
+    told_cells: &[u8],
+) -> Result<MissionMessage, socrates_model::Fault> {
     let Mission { robot, grid, doors, waypoints, .. } = wanted.mission;
     let planner = PlannerName::new(format!("external:{}", wanted.driver));
     let points = |points: &[Point]| points.iter().map(at).collect::<Vec<_>>();
@@ -43,7 +49,7 @@ pub fn message(wanted: &Wanted<'_>, session: u64, mode: Mode) -> Result<MissionM
         robot: RobotFile::from(robot),
         goal: waypoints.last().map(at).unwrap_or_default(),
         waypoints: points(waypoints),
-        plan: points(&socrates_planners::free_way(wanted.mission)),
+        plan: points(plan),
         doors: doors
             .iter()
             .map(|door| MissionDoor { id: door.id.clone(), from: at(&door.from), to: at(&door.to) })
@@ -55,7 +61,7 @@ pub fn message(wanted: &Wanted<'_>, session: u64, mode: Mode) -> Result<MissionM
             resolution_m: grid.resolution_m,
             origin: [grid.origin.x, grid.origin.y],
             yaw: grid.origin.yaw,
-            digest: Digest::of(&cells(grid)),
+            digest: Digest::of(told_cells),
         },
     })
 }

@@ -8,6 +8,7 @@
 //! A driver that hangs, dies or answers what no robot can be told ends its run with `J-DRIVER`.
 
 mod again;
+mod line;
 mod mission;
 mod over_bus;
 mod settings;
@@ -22,7 +23,7 @@ use socrates_model::{
 use socrates_planners::Mission;
 
 pub use again::Again;
-pub use mission::message;
+pub use line::{Claims, Line, told};
 pub use over_bus::OverBus;
 pub use settings::{Drive, Mode};
 

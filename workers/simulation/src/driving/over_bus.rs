@@ -5,14 +5,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use socrates_kit::Cancel;
-use socrates_link::{Bus, LinkError, keys};
+use socrates_link::{Bus, LinkError};
 use socrates_model::driver::{EndMessage, MissionAnswer, Shown};
-use socrates_model::lockstep::{MAP_PART_CELLS, StepHead, map_bytes, read_command, step_bytes};
+use socrates_model::lockstep::{StepHead, read_command, step_bytes};
 use socrates_model::{Command, Digest, Fault, Observation, Point, Polyline, RobotDriver, SeenPerson};
 use tokio::runtime::Handle;
 use tokio::task::JoinHandle;
-use tokio::time::timeout;
 
+use super::line::{Line, told};
 use super::mission::{cells, message};
 use super::{Drive, Driver, Ended, Mode, Outside, Wanted, fault};
 
@@ -45,103 +45,46 @@ impl OverBus {
     fn session(&self, wanted: &Wanted<'_>) -> u64 {
         let nth = SESSIONS.fetch_add(1, Ordering::Relaxed);
         let text = format!("{} {} {} {nth}", self.bus.name(), std::process::id(), wanted.run);
-        let digest = Digest::of(text.as_bytes()).to_string();
-        let number = digest.bytes().fold(0_u64, |number, byte| number.wrapping_mul(131).wrapping_add(u64::from(byte)));
-        number >> (u64::BITS - SESSION_BITS)
+        Digest::of(text.as_bytes()).seed() >> (u64::BITS - SESSION_BITS)
     }
 
     /// Waits for the driver, tells it the mission, and gives it the map if it wants it.
-    async fn hello(&self, wanted: &Wanted<'_>, session: u64) -> Result<MissionAnswer, Fault> {
+    async fn hello(
+        &self,
+        line: &Line,
+        wanted: &Wanted<'_>,
+        plan: &[Point],
+        session: u64,
+    ) -> Result<MissionAnswer, Fault> {
         let failed = |why: String| fault(wanted.driver, why);
-        let mission = message(wanted, session, self.drive.mode)?;
-        let mission = serde_json::to_vec(&mission).map_err(|why| failed(format!("the mission: {why}")))?;
-        let patience = self.drive.patience;
-        let broken = |why: LinkError| failed(why.to_string());
-        let mut claims = self.bus.watch_alive(keys::DRIVERS_ALIVE).await.map_err(broken)?;
-        let (mut there, mut others) = (Vec::new(), std::collections::BTreeSet::new());
-        let first = async {
-            while let Some((claim, alive)) = claims.next().await {
-                match keys::driver_of(&claim) {
-                    Some(name) if alive && name == wanted.driver => return Some(claim),
-                    Some(name) if alive => drop(others.insert(name.to_owned())),
-                    Some(_) | None => {}
-                }
-            }
-            None
-        };
-        let Some(first) = timeout(patience, first).await.ok().flatten() else {
-            let token = keys::drive_claims(wanted.driver);
-            let nobody =
-                format!("no driver of this name came within {} s; it declares the token `{token}`", patience.as_secs());
-            let others: Vec<String> = others.into_iter().map(|name| format!("`{name}`")).collect();
-            return Err(failed(match others.as_slice() {
-                [] => nobody,
-                names => format!("{nobody}; there are drivers called {}", names.join(", ")),
-            }));
-        };
-        there.push(first);
-        let key = keys::drive_mission(wanted.driver);
-        let answer = self.bus.query(&key, mission, patience).await.map_err(|why| failed(told(&why)))?;
-        // Every token that was there before has come before the answer.
-        while let Ok(Some((claim, alive))) = timeout(Duration::ZERO, claims.next()).await {
-            if keys::driver_of(&claim) != Some(wanted.driver) {
-                continue;
-            }
-            there.retain(|other| *other != claim);
-            if alive {
-                there.push(claim);
-            }
-        }
-        if let [one, other, ..] = there.as_slice() {
-            return Err(failed(format!("two drivers have this name: `{one}` and `{other}`; end one of them")));
-        }
-        let answer = MissionAnswer::read(&answer).map_err(|bad| failed(bad.to_string()))?;
+        let cells = cells(&wanted.mission.grid);
+        let mission = message(wanted, session, self.drive.mode, plan, &cells)?;
+        let claims = line.claims().await.map_err(failed)?;
+        let answer = line.mission(&mission).await;
+        claims.alone().await.map_err(failed)?;
+        let answer = answer.map_err(failed)?;
         if answer.map {
-            let cells = cells(&wanted.mission.grid);
-            let whole = cells.len() as u64;
-            let mut first = 0;
-            for part in cells.chunks(MAP_PART_CELLS) {
-                let body = map_bytes(session, first, whole, part);
-                self.bus.query(&key, body, patience).await.map_err(|why| failed(format!("the map: {}", told(&why))))?;
-                first += part.len() as u64;
-            }
+            line.map(session, &cells).await.map_err(failed)?;
         }
         Ok(answer)
-    }
-}
-
-/// What went wrong with a question to a driver.
-fn told(why: &LinkError) -> String {
-    match why {
-        LinkError::NoReply { .. } => "it is gone, or gave no answer".to_owned(),
-        LinkError::Timeout { after, .. } => format!("no answer within {:.1} s", after.as_secs_f64()),
-        LinkError::TooLarge { .. }
-        | LinkError::BadKey { .. }
-        | LinkError::Encode { .. }
-        | LinkError::Decode { .. }
-        | LinkError::Incompatible { .. }
-        | LinkError::Refused { .. }
-        | LinkError::Absent { .. }
-        | LinkError::Closed
-        | LinkError::Transport { .. } => why.to_string(),
     }
 }
 
 impl Outside for OverBus {
     fn begin(&mut self, wanted: &Wanted<'_>) -> Result<Box<dyn Driver>, Fault> {
         let session = self.session(wanted);
-        let answer = self.handle.block_on(self.hello(wanted, session))?;
-        let plan = Polyline::new(&socrates_planners::free_way(wanted.mission));
+        let line = Line::new(Arc::clone(&self.bus), wanted.driver, self.drive.patience);
+        let plan = socrates_planners::free_way(wanted.mission);
+        let answer = self.handle.block_on(self.hello(&line, wanted, &plan, session))?;
         Ok(Box::new(Remote {
-            name: wanted.driver.to_owned(),
-            bus: Arc::clone(&self.bus),
+            line,
             handle: self.handle.clone(),
             drive: self.drive,
             cancel: self.cancel.clone(),
             session,
             answer,
             goal: wanted.mission.waypoints.last().copied(),
-            plan,
+            plan: Polyline::new(&plan),
             s: 0.0,
             call: 0,
             last: Command::default(),
@@ -158,8 +101,7 @@ type Asked = JoinHandle<Result<Vec<u8>, LinkError>>;
 
 /// One run of a driver over the bus.
 struct Remote {
-    name: String,
-    bus: Arc<dyn Bus>,
+    line: Line,
     handle: Handle,
     drive: Drive,
     cancel: Cancel,
@@ -213,13 +155,13 @@ impl Remote {
     }
 
     fn end(&mut self, now_s: f64, why: &str) {
-        self.fault = Some(fault(&self.name, format!("at {now_s:.2} s: {why}")));
+        self.fault = Some(fault(self.line.driver(), format!("at {now_s:.2} s: {why}")));
     }
 
     /// The simulation stands until the answer is there, at most so long.
-    fn wait(&mut self, body: Vec<u8>, limit: Duration, now_s: f64) {
-        let (key, call) = (keys::drive_step(&self.name), self.call);
-        match self.handle.block_on(self.bus.query(&key, body, limit)) {
+    fn wait(&mut self, seen: &Observation<'_>, limit: Duration, now_s: f64) {
+        let (body, call) = (self.bytes(seen), self.call);
+        match self.handle.block_on(self.line.step(body, limit)) {
             Ok(answer) => self.take(&answer, call, now_s),
             Err(LinkError::Timeout { .. }) if matches!(self.drive.mode, Mode::Wait(_)) => {
                 self.silent = self.silent.saturating_add(limit);
@@ -241,9 +183,8 @@ impl Remote {
             }
         }
         if self.asked.is_none() {
-            let (body, key) = (self.bytes(seen), keys::drive_step(&self.name));
-            let (bus, patience) = (Arc::clone(&self.bus), self.drive.patience);
-            let asked = self.handle.spawn(async move { bus.query(&key, body, patience).await });
+            let (body, line, patience) = (self.bytes(seen), self.line.clone(), self.drive.patience);
+            let asked = self.handle.spawn(async move { line.step(body, patience).await });
             self.asked = Some((self.call, asked));
         }
     }
@@ -263,14 +204,8 @@ impl RobotDriver for Remote {
             return Command::default();
         }
         match self.drive.mode {
-            Mode::Step => {
-                let body = self.bytes(seen);
-                self.wait(body, self.drive.patience, now_s);
-            }
-            Mode::Wait(limit) => {
-                let body = self.bytes(seen);
-                self.wait(body, limit, now_s);
-            }
+            Mode::Step => self.wait(seen, self.drive.patience, now_s),
+            Mode::Wait(limit) => self.wait(seen, limit, now_s),
             Mode::Free => self.go_on(seen, now_s),
         }
         self.call = self.call.saturating_add(1);
@@ -298,12 +233,9 @@ impl Driver for Remote {
             time_s: ended.time_s,
             arrived: ended.arrived,
         };
-        let key = keys::drive_mission(&self.name);
-        if let Ok(body) = serde_json::to_vec(&message)
-            && let Err(why) = self.handle.block_on(self.bus.query(&key, body, FAREWELL))
-        {
+        if let Err(why) = self.handle.block_on(self.line.end(&message, FAREWELL)) {
             // The run is whole without it.
-            tracing::debug!(driver = self.name, %why, "the driver did not take note of the end");
+            tracing::debug!(driver = self.line.driver(), why, "the driver did not take note of the end");
         }
     }
 

@@ -48,7 +48,7 @@ impl Default for FFormationParams {
 /// How groups are known.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GroupSource {
-    /// Who belongs to which group.
+    /// The group that each human belongs to.
     Given(Vec<(HumanId, u32)>),
     /// By where people stand and look, or how they walk.
     FFormation(FFormationParams),

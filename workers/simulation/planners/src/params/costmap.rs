@@ -311,7 +311,7 @@ fn group_layer(from: &mut Section<'_>) -> GroupsParams {
     let mut found = GroupsParams::default();
     let sources = [
         ("fformation", GroupSource::FFormation(FFormationParams::default())),
-        // Whom the simulation knows to belong together is told with the mission.
+        // The groups that the simulation knows are told with the mission.
         ("oracle", GroupSource::Given(Vec::new())),
     ];
     from.choice("groups", &mut found.source, &sources);
