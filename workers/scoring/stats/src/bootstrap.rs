@@ -23,6 +23,23 @@ impl Default for Bootstrap {
     }
 }
 
+impl Bootstrap {
+    /// Refuses settings out of range.
+    pub(crate) fn check(&self) -> Result<(), StatsError> {
+        if !(100..=1_000_000).contains(&self.resamples) {
+            return Err(StatsError::OutOfRange {
+                name: "resamples",
+                value: crate::float(self.resamples),
+                allowed: "100 to 1000000",
+            });
+        }
+        if !(0.5..=0.999).contains(&self.confidence) {
+            return Err(StatsError::OutOfRange { name: "confidence", value: self.confidence, allowed: "0.5 to 0.999" });
+        }
+        Ok(())
+    }
+}
+
 /// Median with its percentile bootstrap interval (Efron 1979).
 ///
 /// # Errors
@@ -45,16 +62,7 @@ pub fn bootstrap_mean(values: &[f64], how: Bootstrap) -> Result<Interval, StatsE
 /// A statistic with its interval; it may put the values in order.
 fn bootstrap(values: &[f64], how: Bootstrap, statistic: impl Fn(&mut [f64]) -> f64) -> Result<Interval, StatsError> {
     finite(values, 2)?;
-    if !(100..=1_000_000).contains(&how.resamples) {
-        return Err(StatsError::OutOfRange {
-            name: "resamples",
-            value: crate::float(how.resamples),
-            allowed: "100 to 1000000",
-        });
-    }
-    if !(0.5..=0.999).contains(&how.confidence) {
-        return Err(StatsError::OutOfRange { name: "confidence", value: how.confidence, allowed: "0.5 to 0.999" });
-    }
+    how.check()?;
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let mut random = ChaCha8Rng::seed_from_u64(how.seed);
@@ -75,7 +83,7 @@ fn bootstrap(values: &[f64], how: Bootstrap, statistic: impl Fn(&mut [f64]) -> f
 }
 
 /// A number below `n` by the high half of a product: unbiased enough for n far below 2^32.
-fn below(random: &mut ChaCha8Rng, n: usize) -> usize {
+pub(crate) fn below(random: &mut ChaCha8Rng, n: usize) -> usize {
     let product = u128::from(random.next_u64()) * n as u128;
     usize::try_from(product >> 64).unwrap_or(0)
 }

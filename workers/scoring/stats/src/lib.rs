@@ -4,6 +4,7 @@
 //! counts of runs ─► wilson          labels of two raters ─► cohen_kappa
 //! pairs of runs  ─► mcnemar
 //! values of runs ─► quantile, median ─► bootstrap_median, bootstrap_mean (seeded)
+//! values by scenario and planner ─► Clusters ─► means, paired differences, orders of every resample
 //! scores of planners ─► kendall_tau
 //! ```
 //!
@@ -13,6 +14,7 @@
 //! *Never here:* a domain word, a file, a clock, a generator that was not seeded by the caller.
 
 mod bootstrap;
+mod clusters;
 mod kappa;
 mod mcnemar;
 mod order;
@@ -20,6 +22,7 @@ mod rank;
 mod wilson;
 
 pub use bootstrap::{Bootstrap, bootstrap_mean, bootstrap_median};
+pub use clusters::Clusters;
 pub use kappa::{cohen_kappa, krippendorff_alpha};
 pub use mcnemar::mcnemar;
 pub use order::{mean, median, quantile, sample_sd};
