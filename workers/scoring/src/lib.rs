@@ -22,6 +22,7 @@ mod series;
 mod skips;
 mod tracks;
 
+pub mod compare;
 pub mod fidelity;
 pub mod metrics;
 pub mod mutants;

@@ -119,7 +119,7 @@ fn named(run: &PooledRun<'_>) -> String {
 }
 
 /// Refuses figures that do not mean the same.
-fn alike(runs: &[PooledRun<'_>]) -> Result<String, PoolFault> {
+pub(crate) fn alike(runs: &[PooledRun<'_>]) -> Result<String, PoolFault> {
     let Some(first) = runs.first() else { return Ok(String::new()) };
     let wanted = &first.report.thresholds;
     if let Some(other) = runs.iter().find(|run| run.report.thresholds != *wanted) {

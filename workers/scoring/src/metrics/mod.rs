@@ -375,7 +375,7 @@ fn or_why(value: Option<f64>, why: &str) -> Measured {
 
 /// A count as a value.
 #[expect(clippy::cast_precision_loss, reason = "counts of a run are far below 2^53")]
-const fn count(count: usize) -> f64 {
+pub(crate) const fn count(count: usize) -> f64 {
     count as f64
 }
 
