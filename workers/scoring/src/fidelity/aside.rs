@@ -37,7 +37,7 @@ fn went_aside(moments: &[Moment], passing: &Moment) -> (f64, f64) {
 /// How somebody is beside the robot's line as it passes.
 struct Passed {
     at_s: f64,
-    /// How far beside the line, m.
+    /// How far beside the line on which it passes, or beside its intended way, m.
     aside_m: f64,
     /// How far they went for it, and how much farther off the line that led them, m.
     own_m: f64,
@@ -82,7 +82,9 @@ fn passed(signals: &Signals<'_>, human: HumanId, act: &Action) -> Result<(Since,
     let begins_s = by_tree.map(|span| span.from_s).find(|t| *t <= moment.t && since.counts(*t));
     let begins = moments.partition_point(|other| begins_s.is_some_and(|t| other.t < t));
     let (own_m, off_m) = went_aside(moments.get(begins..).unwrap_or_default(), moment);
-    Ok((since, Passed { at_s: moment.t, aside_m: moment.left_m.abs(), own_m, off_m }))
+    // A robot that swerves towards somebody who has made way takes nothing from it either.
+    let aside_m = moment.way.map_or(0.0, |(_, off)| off).max(moment.left_m.abs());
+    Ok((since, Passed { at_s: moment.t, aside_m, own_m, off_m }))
 }
 
 /// The human is beside the robot's line as the robot passes, and has gone there.

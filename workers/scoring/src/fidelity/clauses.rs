@@ -203,6 +203,33 @@ fn made_way(signals: &Signals<'_>, human: HumanId) -> bool {
         && moments.iter().any(|moment| moment.distance_m <= MEET_NODE_M)
 }
 
+/// Room between where somebody is to stop and where they have stopped, m.
+const STOPS_M: f64 = 0.5;
+
+/// How near somebody and the robot have to come at least, m: whoever is to stand as soon as the robot is at some distance cannot be
+/// asked to come nearer than that.
+fn nearest_asked_m(plan: &Proposal, human: HumanId) -> f64 {
+    let rules = plan.human(human).map_or(&[][..], |one| &one.rules);
+    let stands = rules.iter().filter(|rule| matches!(rule.act, Action::StandStill | Action::LookAtRobot));
+    let at_m = stands.flat_map(|rule| &rule.when).filter_map(|when| match when {
+        Trigger::RobotVisible(reach_m) | Trigger::RobotNear(reach_m) => Some(reach_m + STOPS_M),
+        Trigger::Always
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::RobotPassed
+        | Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::GoalReached
+        | Trigger::AtEncounter
+        | Trigger::AfterSecs(_)
+        | Trigger::StoppedFor(_)
+        | Trigger::Did(..)
+        | Trigger::Done(_) => None,
+    });
+    at_m.fold(MEET_NODE_M, f64::max)
+}
+
 /// What must be seen whatever the proposal lists: everybody is there, nobody breaks physics, and
 /// every encounter of the paths happens. A scenario cannot be realised by promising nothing.
 fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
@@ -245,10 +272,11 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
                 }
                 continue;
             }
-            let meets = |predicate: &Predicate| matches!(predicate, Predicate::Meets { human: who, within_m } if *who == human && *within_m <= MEET_NODE_M);
+            let within_m = signals.evidence.proposal.map_or(MEET_NODE_M, |plan| nearest_asked_m(plan, human));
+            let meets = |predicate: &Predicate| matches!(predicate, Predicate::Meets { human: who, within_m: asked } if *who == human && *asked <= within_m);
             if !has(&meets) {
                 let text = format!("{human} meets the robot near {}", encounter.node);
-                more.push(setup(format!("auto-meet-{human}"), text, Predicate::Meets { human, within_m: MEET_NODE_M }));
+                more.push(setup(format!("auto-meet-{human}"), text, Predicate::Meets { human, within_m }));
             }
         }
     }
