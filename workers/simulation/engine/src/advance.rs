@@ -136,7 +136,7 @@ impl Engine {
             }
         }
         if let (Some(robot), Some(body)) = (&mut self.robot, bodies.last()) {
-            robot.settle(body.at, body.velocity);
+            robot.settle(body.at, body.velocity, self.floor.field());
         }
         (self.desk.wants, self.desk.bodies) = (wants, bodies);
     }

@@ -38,6 +38,7 @@ mod make_room;
 mod meetings;
 mod motion;
 mod near;
+mod other_way;
 mod placing;
 mod rendezvous;
 mod robot;

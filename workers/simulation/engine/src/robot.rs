@@ -1,8 +1,10 @@
 //! The robot's body: a disc with the motion limits of its base, and how far it has come.
 
+use socrates_maps::DistanceField;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{AgentId, Command, Gesture, NodeId, Point, Polyline, Pose, RobotModel, Vector};
 
+use crate::other_way::OtherWay;
 use crate::view::MOVING_MPS;
 
 /// How long a gesture is held, s.
@@ -37,6 +39,8 @@ pub(crate) struct Robot {
     pub(crate) nodes: Vec<(NodeId, f64)>,
     pub(crate) next_node: usize,
     pub(crate) s: f64,
+    /// How far on it is while it goes another way; made when it first does.
+    pub(crate) other_way: Option<OtherWay>,
     /// Pace along the way while it moves, m/s.
     pub(crate) pace_mps: f64,
     pub(crate) arrived_s: Option<f64>,
@@ -127,7 +131,7 @@ impl Robot {
     }
 
     /// Takes over what contacts left of position and speed, and counts the progress.
-    pub(crate) fn settle(&mut self, at: Point, velocity: Vector) {
+    pub(crate) fn settle(&mut self, at: Point, velocity: Vector, field: &DistanceField) {
         self.pose.x = at.x;
         self.pose.y = at.y;
         if (velocity - self.velocity).norm() > 1e-9 {
@@ -148,7 +152,9 @@ impl Robot {
         } else {
             // Far off its way the nearest point says little. A planner that goes another way counts again where it comes back.
             let (s, aside) = self.route.project_within(&at, self.s, self.route.length_m());
-            self.s = if aside < BACK_ON_WAY_M { s } else { self.s };
+            let (route, radius_m) = (&self.route, self.model.radius_m);
+            let other = self.other_way.get_or_insert_with(|| OtherWay::new(route, field, radius_m));
+            self.s = if aside < BACK_ON_WAY_M { s } else { other.level_s(&at, self.s).unwrap_or(self.s) };
         }
         if self.speed_mps() > 0.15 {
             let share = STEP_SECS / PACE_S;

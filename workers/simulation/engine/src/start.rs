@@ -96,6 +96,7 @@ pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
         nodes,
         next_node: 0,
         s: 0.0,
+        other_way: None,
         pace_mps: 0.93 * setup.robot.v_max_mps,
         arrived_s: None,
         at_full_goal_s: 0.0,
