@@ -36,12 +36,14 @@ pub struct FilmOptions {
 }
 
 /// A run that a film shows, with what became of it for the card at the end.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Shown<'a> {
     /// The run.
     pub recording: &'a Recording,
     /// Its report, where it has one.
     pub report: Option<&'a Report>,
+    /// What stands for planner and seed; `None` for these themselves.
+    pub name: Option<String>,
 }
 
 /// Why a film could not be made.
@@ -180,7 +182,8 @@ impl<'a> Film<'a> {
                 options.labels,
                 safe,
             );
-            let title = format!("{} · seed {}", recording.header.planner, recording.header.seed);
+            let itself = || format!("{} · seed {}", recording.header.planner, recording.header.seed);
+            let title = shown.name.clone().unwrap_or_else(itself);
             let mut captions = captions(recording);
             if runs.len() > 1 {
                 // Side by side a caption says which run it is about.
@@ -328,7 +331,7 @@ mod tests {
     const SMALL: FilmOptions = FilmOptions { size: (320, 180), fps: 10, labels: true, speed: None };
 
     fn bare<'a>(runs: &[&'a Recording]) -> Vec<Shown<'a>> {
-        runs.iter().map(|recording| Shown { recording, report: None }).collect()
+        runs.iter().map(|recording| Shown { recording, report: None, name: None }).collect()
     }
 
     fn film<'a>(location: &'a Location, runs: &[&'a Recording], options: FilmOptions) -> Film<'a> {
@@ -360,10 +363,28 @@ mod tests {
     }
 
     #[test]
+    fn names_that_stand_for_the_planners_are_all_that_a_film_tells_of_them() {
+        let (location, run) = (hall("hall"), walk(2));
+        let report = report(&run, "9 of 9 setup clauses");
+        let shown = ['A', 'B'].map(|letter| Shown {
+            recording: &run,
+            report: Some(&report),
+            name: Some(format!("robot {letter}")),
+        });
+        let options = FilmOptions { size: (640, 360), ..SMALL };
+        let film = Film::new(&location, "they meet", &[&run, &run], &shown, options).unwrap();
+        for film_s in [0.0, 4.0, film.times.length_s() - 0.1] {
+            let words = film.drawing(film_s);
+            assert!(words.contains("robot A") && words.contains("robot B"), "{film_s}");
+            assert!(!words.contains("reference"), "{film_s}");
+        }
+    }
+
+    #[test]
     fn a_film_begins_with_a_title_and_ends_with_the_verdict() {
         let (location, run) = (hall("hall"), walk(2));
         let report = report(&run, "9 of 9 setup clauses");
-        let shown = [Shown { recording: &run, report: Some(&report) }];
+        let shown = [Shown { recording: &run, report: Some(&report), name: None }];
         let options = FilmOptions { size: (640, 360), ..SMALL };
         let film = Film::new(&location, "they meet", &[&run], &shown, options).unwrap();
         let (first, middle, last) = (film.drawing(0.0), film.drawing(4.0), film.drawing(film.times.length_s() - 0.1));

@@ -340,7 +340,7 @@ mod tests {
         let (location, run) = (hall("hall"), walk(3));
         let film = |labels: bool| {
             let options = FilmOptions { size: (640, 360), fps: 30, labels, speed: None };
-            let shown = [Shown { recording: &run, report: None }];
+            let shown = [Shown { recording: &run, report: None, name: None }];
             Film::new(&location, "they meet", &[&run], &shown, options).unwrap().animated_svg()
         };
         let svg = film(true);
@@ -352,7 +352,7 @@ mod tests {
         // Who comes later is hidden until then.
         let late = crate::fixture::away(walk(3), 2, 0..300);
         let options = FilmOptions { size: (640, 360), fps: 30, labels: true, speed: None };
-        let shown = [Shown { recording: &late, report: None }];
+        let shown = [Shown { recording: &late, report: None, name: None }];
         let shown = Film::new(&location, "they meet", &[&late], &shown, options).unwrap().animated_svg();
         assert_eq!(shown.matches("<g opacity=\"0\">").count(), svg.matches("<g opacity=\"0\">").count() + 1);
         assert!(shown.contains("values=\"0;1\""));

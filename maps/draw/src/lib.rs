@@ -12,6 +12,7 @@ mod actor;
 pub mod annotated;
 pub mod batch;
 pub mod camera;
+pub mod compare_page;
 pub mod draft;
 pub mod facts;
 pub mod figure;
@@ -43,6 +44,7 @@ pub mod track_page;
 
 pub use annotated::annotated_map;
 pub use batch::{BatchEntry, BatchPage, BatchRow, Figures};
+pub use compare_page::{Beside, ComparePage, Head, MeanRow, MetricRow, Part, PlannerRow};
 pub use draft::draft_picture;
 pub use facts::fact_words;
 pub use figure::{FigureError, figure};

@@ -155,6 +155,12 @@ pub(crate) fn run(location: &Location, way: &[Point], recording: &Recording, hz:
     json!({ "hz": hz, "agents": agents, "doors": doors, "way": way.join(" ") })
 }
 
+/// A line of the story: its time and its words.
+pub(crate) fn told(line: &str) -> Option<Value> {
+    let (time, words) = line.trim_start().split_once(" s ")?;
+    Some(json!([time.trim().parse::<f64>().ok()?, words.trim()]))
+}
+
 /// Rounded to a tenth.
 pub(crate) fn tenth(x: f64) -> f64 {
     (x * 10.0).round() / 10.0
@@ -182,6 +188,12 @@ mod tests {
         let track = run_of(f64::NAN);
         assert_eq!((&track[0], track[3].as_i64(), track[7].as_i64()), (&track[4], Some(0), Some(-1)));
         assert_ne!(run_of(2.0)[0], run_of(2.0)[4]);
+    }
+
+    #[test]
+    fn a_line_of_the_story_is_a_time_and_words() {
+        assert_eq!(told("  12.5 s  the robot stops"), Some(json!([12.5, "the robot stops"])));
+        assert_eq!(told("nothing happened"), None);
     }
 
     #[test]

@@ -83,6 +83,8 @@ mod tests {
             include_str!("web/page.js"),
             include_str!("web/batch.html"),
             include_str!("web/batch.js"),
+            include_str!("web/compare.html"),
+            include_str!("web/compare.js"),
             include_str!("web/labels.html"),
             include_str!("web/labels.js"),
             include_str!("web/tracks.html"),

@@ -62,7 +62,7 @@ impl TrackPage<'_> {
         if let Some(members) = run.as_object_mut() {
             members.insert("name".to_owned(), self.title.into());
         }
-        let story: Vec<Value> = self.report.story.iter().filter_map(|line| told(line)).collect();
+        let story: Vec<Value> = self.report.story.iter().filter_map(|line| play::told(line)).collect();
         let data = json!({
             "run": run, "place": play::place(location, 0), "focus": play::focus(location, &goal, &[self.recording]),
             "key": self.key, "all": self.all, "told": self.told, "story": story, "thresholds": self.report.thresholds,
@@ -70,12 +70,6 @@ impl TrackPage<'_> {
         let own = vec![("robot", escape(&self.report.robot_text)), ("location", name)];
         template::page(TEMPLATE, SCRIPT, self.title, play::floors([location]), &data, own)
     }
-}
-
-/// A line of the story: its time and its words.
-fn told(line: &str) -> Option<Value> {
-    let (time, words) = line.trim_start().split_once(" s ")?;
-    Some(json!([time.trim().parse::<f64>().ok()?, words.trim()]))
 }
 
 /// Free floor around everybody.
@@ -159,11 +153,5 @@ mod tests {
         let html = page(EVIL, true);
         assert!(!html.contains("<script>alert") && !html.contains("<!--") && !html.contains("<img"));
         assert_eq!(html.matches("</script>").count(), 2);
-    }
-
-    #[test]
-    fn a_line_of_the_story_is_a_time_and_words() {
-        assert_eq!(told("  12.5 s  the robot stops"), Some(json!([12.5, "the robot stops"])));
-        assert_eq!(told("nothing happened"), None);
     }
 }
