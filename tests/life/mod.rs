@@ -4,6 +4,7 @@ mod asking;
 mod bad_input;
 mod batches;
 mod bundles;
+mod comparing;
 mod doors;
 mod evaluations;
 mod folders;

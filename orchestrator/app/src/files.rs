@@ -47,6 +47,19 @@ pub(crate) fn write_or_say(talk: &Printer, text: &str, out: Option<&Path>) -> Re
     Ok(())
 }
 
+/// A folder as a page beside it refers to it: with `..` where that is needed, and slashes.
+pub(crate) fn relative(page: &Path, folder: &Path) -> String {
+    let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_gone| path.to_path_buf());
+    let from =
+        page.parent().filter(|parent| !parent.as_os_str().is_empty()).map_or_else(|| whole(Path::new(".")), whole);
+    let to = whole(folder);
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(shared).map(|_above| "..".to_owned());
+    let down = to.components().skip(shared).map(|part| part.as_os_str().to_string_lossy().into_owned());
+    let parts: Vec<String> = up.chain(down).collect();
+    if parts.is_empty() { ".".to_owned() } else { parts.join("/") }
+}
+
 /// A path, or another word, as a shell takes it: in quotes where it holds a blank or anything else that a shell would read.
 pub(crate) fn shell(path: &Path) -> String {
     let text = path.display().to_string();
@@ -57,6 +70,19 @@ pub(crate) fn shell(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_is_named_from_where_the_page_lies() {
+        let root = tempfile::tempdir().unwrap();
+        let of = |page: &str, folder: &str| {
+            std::fs::create_dir_all(root.path().join(folder)).unwrap();
+            std::fs::create_dir_all(root.path().join(page).parent().unwrap()).unwrap();
+            relative(&root.path().join(page), &root.path().join(folder))
+        };
+        assert_eq!(of("out/compare.html", "out/scenarios/hall-1"), "scenarios/hall-1");
+        assert_eq!(of("out/compare.html", "library/hall-1"), "../library/hall-1");
+        assert_eq!(of("out/compare.html", "out"), ".");
+    }
 
     #[test]
     fn a_path_with_a_blank_stays_one_word_of_a_shell() {

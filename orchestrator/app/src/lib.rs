@@ -27,6 +27,7 @@ mod cards;
 mod case_studies;
 pub mod cite;
 pub mod cluster;
+pub mod compare;
 mod conclude;
 pub mod config;
 mod cores;

@@ -21,6 +21,15 @@ use crate::session::Making;
 use crate::wanted::{Wanted, wanted};
 use crate::{bundle, index, layout, library_index, next, variants};
 
+/// A folder of scenarios that was made.
+#[derive(Debug)]
+pub(crate) struct Library {
+    /// The folder.
+    pub(crate) root: PathBuf,
+    /// The exit code.
+    pub(crate) code: Code,
+}
+
 /// Makes every scenario of these requests in one folder, whose list and page are written at the end.
 pub(crate) async fn batch(
     talk: &Printer,
@@ -28,7 +37,7 @@ pub(crate) async fn batch(
     options: &RunOptions,
     mut prepared: Vec<Prepared>,
     refused: &[Refused],
-) -> Result<Code, Complaint> {
+) -> Result<Library, Complaint> {
     let names = distinct(prepared.iter().map(|one| one.name.as_str()));
     prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
     let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
@@ -39,7 +48,8 @@ pub(crate) async fn batch(
     let root = match place::place(&base, wish, prepared.iter().any(Prepared::is_driven)) {
         Place::Finished(root) => {
             talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
-            return finish(talk, options, &root, refused);
+            let code = finish(talk, options, &root, refused)?;
+            return Ok(Library { root, code });
         }
         Place::New(root) => place::told(talk, &base, root),
     };
@@ -64,7 +74,8 @@ pub(crate) async fn batch(
     }
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
-    finish(talk, options, &root, refused)
+    let code = finish(talk, options, &root, refused)?;
+    Ok(Library { root, code })
 }
 
 /// The names, of which those that an earlier one has already get a number.

@@ -12,6 +12,7 @@ use crate::conclude::bundled;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::PastJob;
+use crate::many::Library;
 use crate::output::Printer;
 use crate::place::{self, Place};
 use crate::prepare::{Prepared, prepare, prepare_text, request_files, scenario_id};
@@ -78,6 +79,37 @@ pub async fn run(
     requests: &[PathBuf],
     options: &RunOptions,
 ) -> Result<Code, Complaint> {
+    let (prepared, refused) = prepared_all(config, requests, options)?;
+    if refused.is_empty() {
+        return single_or_batch(talk, config, options, prepared).await;
+    }
+    made(talk, config, options, prepared, &refused).await.map(|library| library.code)
+}
+
+/// Runs request files into a folder of scenarios, also where there is one.
+pub(crate) async fn library(
+    talk: &Printer,
+    config: &Config,
+    requests: &[PathBuf],
+    options: &RunOptions,
+) -> Result<Library, Complaint> {
+    let (prepared, refused) = prepared_all(config, requests, options)?;
+    checked(options, &prepared)?;
+    if options.ask {
+        return Err(Complaint::input(
+            "`--ask` looks at a scenario while it is made alone",
+            "`socrates run REQUEST --ask`",
+        ));
+    }
+    made(talk, config, options, prepared, &refused).await
+}
+
+/// Requests as they are run, and those that cannot be.
+fn prepared_all(
+    config: &Config,
+    requests: &[PathBuf],
+    options: &RunOptions,
+) -> Result<(Vec<Prepared>, Vec<Refused>), Complaint> {
     let files = request_files(requests)?;
     let (mut prepared, mut refused) = (Vec::new(), Vec::new());
     for file in &files {
@@ -87,30 +119,38 @@ pub async fn run(
             Err(why) => refused.push(Refused { file: file.clone(), why }),
         }
     }
+    Ok((prepared, refused))
+}
+
+/// Makes the scenarios of the requests that can be run, and says which cannot.
+async fn made(
+    talk: &Printer,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Vec<Prepared>,
+    refused: &[Refused],
+) -> Result<Library, Complaint> {
     if refused.is_empty() {
-        return single_or_batch(talk, config, options, prepared).await;
+        return many::batch(talk, config, options, prepared, refused).await;
     }
     let names: Vec<String> = refused.iter().map(|bad| format!("`{}`", bad.file.display())).collect();
-    let what = format!("{} of {} requests cannot be run: {}", refused.len(), files.len(), names.join(", "));
+    let all = refused.len() + prepared.len();
+    let what = format!("{} of {all} requests cannot be run: {}", refused.len(), names.join(", "));
     if prepared.is_empty() {
         let mut complaint = Complaint::input(what, "correct them; `socrates read FILE` looks at one alone");
         complaint.causes = refused.iter().flat_map(Refused::lines).collect();
         return Err(complaint);
     }
-    for bad in &refused {
+    for bad in refused {
         talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
     }
-    many::batch(talk, config, options, prepared, &refused).await?;
+    let library = many::batch(talk, config, options, prepared, refused).await?;
     talk.warn(&format!("error: {what}\n\nhint: the others were run; correct these and run them alone"));
-    Ok(Code::Input)
+    Ok(Library { code: Code::Input, ..library })
 }
 
-async fn single_or_batch(
-    talk: &Printer,
-    config: &Config,
-    options: &RunOptions,
-    prepared: Vec<Prepared>,
-) -> Result<Code, Complaint> {
+/// Refuses options that do not fit the scenarios, and counts these.
+fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Complaint> {
     pace(&options.pace)?;
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
     if options.ask && count != 1 {
@@ -119,12 +159,22 @@ async fn single_or_batch(
             "name one request, with `--variants 1`",
         ));
     }
+    Ok(count)
+}
+
+async fn single_or_batch(
+    talk: &Printer,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Vec<Prepared>,
+) -> Result<Code, Complaint> {
+    let count = checked(options, &prepared)?;
     let mut prepared = prepared;
     match prepared.pop() {
         Some(one) if count == 1 => single(talk, config, options, one).await,
         last => {
             prepared.extend(last);
-            many::batch(talk, config, options, prepared, &[]).await
+            many::batch(talk, config, options, prepared, &[]).await.map(|library| library.code)
         }
     }
 }

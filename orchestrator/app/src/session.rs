@@ -15,7 +15,7 @@ use crate::ask::Asking;
 use crate::bundler::Bundler;
 use crate::calls::{AWAY, status, submit};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::Complaint;
 use crate::folder::Hold;
 use crate::history::History;
 use crate::output::Printer;
@@ -182,7 +182,7 @@ async fn follow(
             complaint = supervisor.gave_up() => {
                 // A folder that is gone is the reason for whatever else its processes complain of.
                 hold.check()?;
-                return Err(complaint.with_code(Code::Ours));
+                return Err(complaint);
             }
             complaint = left(&mut asking) => return Err(complaint),
             _ = signals.interrupt.recv() => if !looking || !talk.live {

@@ -289,7 +289,8 @@ async fn keep(
             None
         };
         if let Some(complaint) = gave_up {
-            drop(report.send(complaint).await);
+            // A process of ours that cannot go on is no fault of the input.
+            drop(report.send(complaint.with_code(Code::Ours)).await);
             return;
         }
         tracing::warn!(role = role.name, how, why, "a child died and is started again");
@@ -303,7 +304,7 @@ async fn keep(
                 pipe = child.stdin.take();
             }
             Err(why) => {
-                drop(report.send(why).await);
+                drop(report.send(why.with_code(Code::Ours)).await);
                 return;
             }
         }

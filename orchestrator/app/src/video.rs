@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use serde_json::json;
 use socrates_draw::gif::{Gif, Histogram};
 use socrates_draw::{Film, FilmOptions, Shown};
-use socrates_model::{Recording, Run};
+use socrates_model::{Digest, Recording, Run};
 
 use crate::bundle::{self, Bundle, RunEntry};
 use crate::config::Config;
@@ -15,11 +15,16 @@ use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::progress::Progress;
 
+/// Names of planners that are not to be known, by place.
+const LETTERS: [char; socrates_draw::film::PANELS] = ['A', 'B', 'C', 'D'];
+
 /// Whether names, clock and planner are written into a film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Labels {
     /// Names, clock, planner and captions.
     On,
+    /// The same, with robot A, robot B and so on for the planners, in an order that tells nothing of them.
+    Opaque,
     /// None of them: for people who must not know the planner. What somebody says is shown all the same.
     Off,
 }
@@ -71,11 +76,20 @@ impl Kind {
     }
 }
 
-/// Makes the film.
+/// Makes the film, and tells where it is.
 pub fn video(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<(), Complaint> {
+    talk.result(&film(talk, config, options)?);
+    Ok(())
+}
+
+/// Makes the film, and hands back what is told of it to programs.
+pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<serde_json::Value, Complaint> {
     let ffmpeg = config.installed("ffmpeg");
     let bundle = bundle::read(&options.bundle)?;
-    let runs = shown_runs(&bundle, &options.run)?;
+    let mut runs = shown_runs(&bundle, &options.run)?;
+    if options.labels == Labels::Opaque {
+        runs.sort_by_key(|run| Digest::of(format!("{} {run}", bundle.manifest.scenario).as_bytes()));
+    }
     let names: Vec<String> = runs.iter().map(Run::to_string).collect();
     let out = options.out.clone().unwrap_or_else(|| {
         let ending = if ffmpeg.is_some() { "mp4" } else { "gif" };
@@ -91,13 +105,17 @@ pub fn video(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<
     let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
     let shown: Vec<Shown<'_>> = runs
         .iter()
-        .filter_map(|run| bundle.run(run))
-        .map(|(recording, report)| Shown { recording, report: Some(report) })
+        .zip(LETTERS)
+        .filter_map(|(run, letter)| Some((bundle.run(run)?, letter)))
+        .map(|((recording, report), letter)| {
+            let name = (options.labels == Labels::Opaque).then(|| format!("robot {letter}"));
+            Shown { recording, report: Some(report), name }
+        })
         .collect();
     let film_options = FilmOptions {
         size: size(options.size.as_deref(), kind)?,
         fps: if kind == Kind::Gif { 10 } else { 30 },
-        labels: options.labels == Labels::On,
+        labels: options.labels != Labels::Off,
         speed: speed(&options.speed)?,
     };
     let wrong = |why: socrates_draw::FilmError| {
@@ -128,12 +146,11 @@ pub fn video(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<
         socrates_offline::summary(&bundle.reading),
         bundle.proposal.description.trim()
     );
-    talk.result(&json!({
+    Ok(json!({
         "video": out.display().to_string(), "runs": names, "seconds": round(times.length_s()), "from_s": round(times.from_s),
         "to_s": round(times.to_s), "speed": round(times.speed), "pictures": count, "fps": times.fps, "alt": alt,
-        "digest": std::fs::read(&out).ok().map(|bytes| socrates_model::Digest::of(&bytes)),
-    }));
-    Ok(())
+        "digest": std::fs::read(&out).ok().map(|bytes| Digest::of(&bytes)),
+    }))
 }
 
 /// The runs that are shown; each must be in the bundle.

@@ -3,6 +3,7 @@
 mod bt;
 mod bundle;
 mod cluster;
+mod compare;
 mod dev;
 mod drive;
 mod evaluate;
@@ -85,6 +86,8 @@ pub(crate) enum Verb {
     Read(request::Read),
     /// Make scenarios from requests: propose, simulate, check, score.
     Run(run::Run),
+    /// Compare planners over the same scenarios and seeds: tables, a page with the runs side by side, a film.
+    Compare(compare::Compare),
     /// Open the page of a bundle.
     Open(bundle::Open),
     /// Write the page of a bundle anew, or one page for a folder of bundles.
@@ -153,6 +156,7 @@ impl Verb {
             Self::New(verb) => verb.act(talk).await,
             Self::Read(verb) => verb.act(talk, config),
             Self::Run(verb) => verb.act(talk, config).await,
+            Self::Compare(verb) => verb.act(talk, config).await,
             Self::Open(verb) => verb.act(talk),
             Self::Report(verb) => verb.act(talk),
             Self::Video(verb) => verb.act(talk, config),

@@ -90,7 +90,7 @@ impl Options {
         run::demo(talk, config, &self.values()).await
     }
 
-    fn values(&self) -> RunOptions {
+    pub(super) fn values(&self) -> RunOptions {
         let Self { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, driver, ask } =
             self.clone();
         let require = match require {

@@ -16,6 +16,8 @@ use super::{Outcome, done};
 enum Labels {
     /// Names, clock, planner and captions.
     On,
+    /// The same, with robot A, robot B and so on for the planners, in an order that tells nothing of them.
+    Opaque,
     /// None of them: for people who must not know the planner. What somebody says is shown all the same.
     Off,
 }
@@ -48,6 +50,7 @@ impl Video {
         let Self { bundle, out, labels, run, speed, size } = self.clone();
         let labels = match labels {
             Labels::On => video::Labels::On,
+            Labels::Opaque => video::Labels::Opaque,
             Labels::Off => video::Labels::Off,
         };
         done(video::video(talk, config, &VideoOptions { bundle, out, labels, run, speed, size }))
