@@ -90,16 +90,6 @@ pub(crate) fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result
 /// Scores a bundle again, one file of tracks, or a bag of ROS 2.
 pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
     let what = options.what.as_path();
-    let bag = bags::at(what)?;
-    if bag.is_none() && what.is_dir() {
-        if options.tells() {
-            return Err(Complaint::input(
-                "a bundle knows its location, goal, radius and groups",
-                "these flags are for tracks of your own: name a CSV or an MCAP file, or a bag of ROS 2; the page of a bundle is its report.html",
-            ));
-        }
-        return score_bundle(talk, what);
-    }
     let location = options.location.as_deref().map(|name| load_location(name, Path::new("."))).transpose()?;
     let known = Known {
         location: location.map(|(location, _)| location),
@@ -111,10 +101,14 @@ pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
         people: options.people.clone(),
         run: RunChoice { planner: options.planner.clone(), seed: options.seed },
     };
-    let name = what.display().to_string();
-    let scored = match bag {
-        Some(bag) => tracks::score_bag(&name, bag, &known)?,
-        None => tracks::score(&name, &bags::bytes(what)?, &known)?,
+    let Some(scored) = tracks::at(what, &known)? else {
+        if options.tells() {
+            return Err(Complaint::input(
+                "a bundle knows its location, goal, radius and groups",
+                "these flags are for tracks of your own: name a CSV or an MCAP file, or a bag of ROS 2; the page of a bundle is its report.html",
+            ));
+        }
+        return score_bundle(talk, what);
     };
     let report = &scored.report;
     for metric in key_figures(report) {

@@ -31,6 +31,12 @@ pub enum BagFault {
         /// How much is read.
         most: u64,
     },
+    /// More people than a recording has.
+    #[error("more than {most} people are named in it")]
+    Crowd {
+        /// How many are read.
+        most: usize,
+    },
     /// Nothing says where the robot was.
     #[error("nothing in it says where the robot was; its topics are {topics}")]
     NoRobot {
@@ -166,6 +172,9 @@ impl BagFault {
             }
             Self::Large { .. } => {
                 "a bag of the topics that are needed is small: `ros2 bag record -s mcap /tf /tf_static /odom /people /goal_pose`"
+            }
+            Self::Crowd { .. } => {
+                "a tracker that gives people new names makes a crowd of few: score a shorter bag, or one in which names last"
             }
             Self::NotThere { .. } => "`ros2 bag info BAG` lists the topics",
             Self::Messages { .. } => {

@@ -132,7 +132,7 @@ pub(super) fn is_called_goal(name: &str) -> bool {
     GOALS.iter().any(|ending| name.ends_with(ending))
 }
 
-/// Who is around: what the user names, else HuNavSim's agents, else people, else lists of poses, else all single poses that are
+/// The people: what the user names, else HuNavSim's agents, else people, else lists of poses, else all single poses that are
 /// called so, one person each.
 pub(super) fn people<'a>(
     bag: &'a Bag,

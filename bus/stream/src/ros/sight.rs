@@ -9,6 +9,8 @@ const REACH_M: f64 = 1e6;
 const RADII_M: std::ops::RangeInclusive<f64> = 0.05..=2.0;
 /// Nanoseconds of a second.
 const SECOND: f64 = 1e9;
+/// Longest name of a person or frame that is kept, characters.
+const NAME_CHARS: usize = 100;
 /// The number that HuNavSim gives to robots among its agents.
 const ROBOT: f64 = 2.0;
 
@@ -142,9 +144,9 @@ pub(super) fn read(kind: Kind, view: View<'_>) -> Result<Seen, MessageFault> {
                     seen.robots += 1;
                     continue;
                 }
-                let number = agent.number("id").map_or_else(|_lacks| (place + 1).to_string(), |id| format!("{id:.0}"));
-                let name = agent.text("name").unwrap_or_default().trim();
-                seen.sight(hunav(if name.is_empty() { &number } else { name }, &head, agent))?;
+                let number = agent.number("id").map_or_else(|_lacks| String::new(), |id| format!("{id:.0}"));
+                let name = agent.text("name").map(str::trim).ok().filter(|name| !name.is_empty());
+                seen.sight(hunav(&or_place(name.unwrap_or(&number), place), &head, agent))?;
             }
         }
         Kind::Agent => {
@@ -212,12 +214,12 @@ impl Head {
 
 fn plain(frame: &str) -> Option<String> {
     let frame = super::frames::plain(frame.trim());
-    (!frame.is_empty()).then(|| frame.to_owned())
+    (!frame.is_empty()).then(|| frame.chars().take(NAME_CHARS).collect())
 }
 
 fn or_place(name: &str, place: usize) -> String {
     let name = name.trim();
-    if name.is_empty() { (place + 1).to_string() } else { name.to_owned() }
+    if name.is_empty() { (place + 1).to_string() } else { name.chars().take(NAME_CHARS).collect() }
 }
 
 /// A time, ns; nothing for one that was never set.

@@ -24,6 +24,8 @@ const CLOCKS_NANOS: i64 = 3_600_000_000_000;
 const THIN_NANOS: i64 = 9_500_000;
 /// Two places of somebody at one time that are farther apart are two people, m.
 const APART_M: f64 = 0.5;
+/// Most people of a bag: as many as a recording of ours has.
+const MOST_PEOPLE: usize = 4096;
 /// Columns of the table, in order.
 const COLUMNS: [&str; 8] = ["t", "id", "x", "y", "yaw", "group", "goal_x", "goal_y"];
 /// Nanoseconds of a second.
@@ -78,6 +80,8 @@ impl Bag {
         for topic in &topics {
             pick::readable(topic)?;
         }
+        let frames = self.in_order().into_iter().filter(|topic| topic.kind == Some(Kind::Transforms));
+        told.extend(frames.flat_map(left_out));
         let target = target(&self.tree, &robot.taken, &people.taken, &mut told);
         let maker = Maker { bag: &self, clock: Clock::of(&self, &topics), target: target.to_owned() };
         let mut tracks: BTreeMap<String, Track> = BTreeMap::new();
@@ -251,14 +255,7 @@ impl<'a> Maker<'a> {
                 placing.stampless
             ));
         }
-        if topic.bad > 0 {
-            let why = topic.why.clone().unwrap_or_default();
-            told.push(format!("{} of {} messages of `{name}` are left out: {why}", topic.bad, topic.messages));
-        }
-        if topic.wrong > 0 {
-            let why = topic.first_wrong.clone().unwrap_or_default();
-            told.push(format!("{} places of `{name}` are taken as gaps: {why}", topic.wrong));
-        }
+        told.extend(left_out(topic));
         if topic.robots > 0 {
             told.push(format!("`{name}` holds robots among its agents: they are left out"));
         }
@@ -324,11 +321,14 @@ impl<'a> Maker<'a> {
             if let (Some(robot), Some(first)) = (robot, placed.iter().map(|(_, fix)| fix.time).min()) {
                 same_clock(robot, topic, first)?;
             }
-            // Who was never put into a group may have the number 0 as well as -1.
+            // People in no group may have the number 0 as well as -1.
             let grouped = topic.sightings.iter().any(|logged| logged.sighting.group.is_some_and(|group| group > 0));
             for (logged, fix) in placed {
                 let id = person(topic, &picked.taken, &logged.sighting.who);
                 radii_m.extend(logged.sighting.radius_m.map(|radius| (id.clone(), radius)));
+                if tracks.len() > MOST_PEOPLE && !tracks.contains_key(&id) {
+                    return Err(BagFault::Crowd { most: MOST_PEOPLE });
+                }
                 let track = tracks.entry(id).or_default();
                 track.group = logged.sighting.group.filter(|_| grouped);
                 track.fixes.push(fix);
@@ -378,7 +378,7 @@ impl<'a> Maker<'a> {
     /// Topics of which nothing was taken.
     fn not_read(&self, robot: &Picked<Robot<'a>>, people: &Picked<Vec<&'a Topic>>) -> Option<String> {
         let is_used = |topic: &Topic| {
-            matches!(topic.kind, Some(Kind::Transforms | Kind::Clock)) && topic.bad == 0
+            matches!(topic.kind, Some(Kind::Transforms | Kind::Clock))
                 || matches!(robot.taken, Robot::Topic(taken) if std::ptr::eq(taken, topic))
                 || people.taken.iter().any(|taken| std::ptr::eq(*taken, topic))
                 || robot.others.iter().chain(&people.others).any(|other| *other == topic.shown())
@@ -388,6 +388,21 @@ impl<'a> Maker<'a> {
         let is_all = self.bag.topics.iter().all(is_used);
         (!is_all).then(|| format!("not read: {}", self.bag.listed(|topic| !is_used(topic))))
     }
+}
+
+/// What of a topic's messages is not taken.
+fn left_out(topic: &Topic) -> Vec<String> {
+    let name = &topic.name;
+    let mut told = Vec::new();
+    if topic.bad > 0 {
+        let why = topic.why.as_deref().unwrap_or_default();
+        told.push(format!("{} of {} messages of `{name}` are left out: {why}", topic.bad, topic.messages));
+    }
+    if topic.wrong > 0 {
+        let why = topic.first_wrong.as_deref().unwrap_or_default();
+        told.push(format!("{} places of `{name}` are taken as gaps: {why}", topic.wrong));
+    }
+    told
 }
 
 /// Refuses messages whose times jump; tells of times that go back a little.

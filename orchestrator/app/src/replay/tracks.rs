@@ -1,6 +1,7 @@
 //! One recording from a file, ours or anybody's, scored with what is said of it on the command line.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use socrates_model::{AgentId, HumanId, Location, Point, Recording, Report};
 use socrates_scoring::Evidence;
@@ -56,9 +57,22 @@ struct Read {
     goal: Option<Point>,
     groups: Vec<Vec<HumanId>>,
     named: Named,
-    /// Who has the radius that the file names; nothing where the file names all that is needed.
+    /// Agents whose radius the file names; nothing for a recording of ours, which names everybody's.
     measured: Option<BTreeSet<AgentId>>,
     table: Option<Table>,
+}
+
+/// Reads and scores what a path names: a file, or a bag of ROS 2. Nothing for a folder that is no bag.
+///
+/// # Errors
+/// What cannot be read, with what would be.
+pub(crate) fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Complaint> {
+    let name = path.display().to_string();
+    match bags::at(path)? {
+        Some(bag) => score_bag(&name, bag, known).map(Some),
+        None if path.is_dir() => Ok(None),
+        None => score(&name, &bags::bytes(path)?, known).map(Some),
+    }
 }
 
 /// Reads and scores the bytes of a file.
@@ -86,7 +100,7 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
 ///
 /// # Errors
 /// What is missing in it, with what mends it.
-pub(crate) fn score_bag(name: &str, bag: Bag, known: &Known) -> Result<Scored, Complaint> {
+fn score_bag(name: &str, bag: Bag, known: &Known) -> Result<Scored, Complaint> {
     if known.run != RunChoice::default() {
         return Err(Complaint::input(format!("`{name}` holds one run"), "--planner and --seed are for tables"));
     }
@@ -198,7 +212,7 @@ fn assumed(known: &Known, recording: &Recording, measured: &BTreeSet<AgentId>) -
 /// A recording of ours; nothing for one of others in which there may be messages of ROS 2.
 fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Option<Read>, Complaint> {
     let rest = match mcap::read_rest(bytes) {
-        // Whoever wrote the file may have left out the profile of ROS 2.
+        // A program that writes MCAP may leave out the profile of ROS 2.
         Err(StreamError::Foreign { .. }) if bags::of_bytes(name, bytes).is_ok_and(|bag| bag.is_ros()) => {
             return Ok(None);
         }
