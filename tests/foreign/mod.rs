@@ -1,6 +1,7 @@
 //! With programs of others: browsers, servers of models, other users, terminals. The second ring of the gate runs these with
 //! everything installed; elsewhere what is missing is left out and named.
 
+mod bags;
 mod drivers;
 mod looks;
 mod models;

@@ -2,6 +2,7 @@
 
 mod asking;
 mod bad_input;
+mod bags;
 mod batches;
 mod bundles;
 mod comparing;

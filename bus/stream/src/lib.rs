@@ -12,7 +12,7 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
-//! | `mcap` | recordings as files, and the live stream, which reads older ticks from them |
+//! | `mcap` | recordings as files, bags of ROS 2, and the live stream, which reads older ticks from files |
 //! | `shm` | frames in shared memory; without it [`ShmHost`] says so in the log and has none |
 //! | `zenoh` | the bus between processes, for the example `subscriber` |
 //!
@@ -55,3 +55,5 @@ pub use watch::{Sight, Watch};
 pub mod csv;
 #[cfg(feature = "mcap")]
 pub mod mcap;
+#[cfg(feature = "mcap")]
+pub mod ros;

@@ -1,5 +1,6 @@
-//! `simulate` and `score`: a bundle again, or tracks of one's own.
+//! `simulate` and `score`: a bundle again, or tracks and bags of one's own.
 
+mod bags;
 mod lines;
 mod options;
 pub(crate) mod tracks;
@@ -15,7 +16,7 @@ use socrates_model::{MetricValue, PlannerName, Report, Run, ScenarioId};
 use socrates_scoring::Evidence;
 use socrates_scoring::metrics::{KEY_FIGURES, in_words, key_figures};
 use socrates_simulation::driving::{Again, Nobody, Outside};
-use socrates_stream::csv::RunChoice;
+use socrates_stream::csv::{RunChoice, Table, joined};
 
 use crate::bundle::{self, Bundle, RunEntry};
 use crate::exit::{Code, Complaint};
@@ -86,24 +87,9 @@ pub(crate) fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result
     scribe.finish()
 }
 
-/// Scores a bundle again, or one file of tracks.
+/// Scores a bundle again, one file of tracks, or a bag of ROS 2.
 pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
     let what = options.what.as_path();
-    if what.is_dir() {
-        if options.tells() {
-            return Err(Complaint::input(
-                "a bundle knows its location, goal, radius and groups",
-                "these flags are for tracks of your own: name a CSV or an MCAP file; the page of a bundle is its report.html",
-            ));
-        }
-        return score_bundle(talk, what);
-    }
-    let bytes = std::fs::read(what).map_err(|why| {
-        Complaint::input(
-            format!("cannot read `{}`: {why}", what.display()),
-            "name a bundle folder, a CSV or an MCAP file",
-        )
-    })?;
     let location = options.location.as_deref().map(|name| load_location(name, Path::new("."))).transpose()?;
     let known = Known {
         location: location.map(|(location, _)| location),
@@ -112,9 +98,18 @@ pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
         speed_mps: options.speed,
         groups: options.groups.clone(),
         robot: options.robot.clone(),
+        people: options.people.clone(),
         run: RunChoice { planner: options.planner.clone(), seed: options.seed },
     };
-    let scored = tracks::score(&what.display().to_string(), &bytes, &known)?;
+    let Some(scored) = tracks::at(what, &known)? else {
+        if options.tells() {
+            return Err(Complaint::input(
+                "a bundle knows its location, goal, radius and groups",
+                "these flags are for tracks of your own: name a CSV or an MCAP file, or a bag of ROS 2; the page of a bundle is its report.html",
+            ));
+        }
+        return score_bundle(talk, what);
+    };
     let report = &scored.report;
     for metric in key_figures(report) {
         talk.line(format!("{:<20} {:<12} {}", metric.id, in_words(metric), metric.note).trim_end());
@@ -123,6 +118,9 @@ pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
     match (&options.out, &page) {
         (Some(out), Some(page)) => {
             talk.line(&format!("table      {}", out.join(METRICS).display()));
+            if scored.table.is_some() {
+                talk.line(&format!("tracks     {}", out.join(TRACKS).display()));
+            }
             talk.line(&format!("look       {}", page.display()));
         }
         _ => talk.line(&format!(
@@ -143,6 +141,14 @@ pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
 
 /// Name of the table of metrics.
 const METRICS: &str = "metrics.csv";
+
+/// Name of the table of tracks that a bag became, which `score` reads as well.
+const TRACKS: &str = "tracks.csv";
+
+/// The text of a table.
+fn text(table: &Table) -> String {
+    std::iter::once(&table.head).chain(&table.rows).map(|row| joined(&row.cells) + "\n").collect()
+}
 
 /// Writes the page of tracks and their metrics, and hands back where the page is.
 fn write_tracks(out: &Path, what: &Path, known: &Known, scored: &Scored) -> Result<PathBuf, Complaint> {
@@ -168,6 +174,9 @@ fn write_tracks(out: &Path, what: &Path, known: &Known, scored: &Scored) -> Resu
         told: &scored.told,
     };
     files::write(&out.join(METRICS), bundle::metrics([&scored.report]).as_bytes())?;
+    if let Some(table) = &scored.table {
+        files::write(&out.join(TRACKS), text(table).as_bytes())?;
+    }
     let file = out.join("report.html");
     files::write(&file, page.html().as_bytes())?;
     Ok(file)

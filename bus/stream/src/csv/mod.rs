@@ -161,8 +161,9 @@ struct Fix {
 }
 
 /// Reads tracks: columns `t` (s), `id` (`robot`, `human_3` or a number; 0 is the robot), `x`, `y` (m) and maybe `yaw`
-/// (rad), `gesture` and `leaf`, in any order; other columns are passed over. Lines may come in any order. The tracks are
-/// brought to the step of 0.01 s by straight lines between fixes, or to ten a second where that would be too many.
+/// (rad; empty where it is not known), `gesture` and `leaf`, in any order; other columns are passed over. Lines may come in
+/// any order. The tracks are brought to the step of 0.01 s by straight lines between fixes, or to ten a second where that would
+/// be too many.
 /// Before its first and after its last fix an agent is not there, and neither it is at a fix whose `leaf` is `absent`
 /// nor on the way to or from one; all other leaves are passed over.
 ///
@@ -301,9 +302,10 @@ impl Columns {
                 id.parse::<AgentId>().map_err(|why| bad(line, &format!("{why}, robot, or a number")))?
             }
         };
+        // An empty heading is not known: it is taken from the motion.
         let yaw = match self.yaw {
-            Some(at) => Some(number(at, "yaw")?),
-            None => None,
+            Some(at) if !cell(at, "yaw")?.is_empty() => Some(number(at, "yaw")?),
+            Some(_) | None => None,
         };
         let gesture = match self.gesture.and_then(|at| cells.get(at)).filter(|gesture| !gesture.is_empty()) {
             Some(gesture) => Gesture::read(gesture).map_err(|why| bad(line, &why.to_string()))?,

@@ -5,6 +5,7 @@
 //! | `;` or tabs between the cells, with them decimal commas | commas, decimal points |
 //! | times since 1970, in s, ms, µs or ns | seconds from the first line on |
 //! | a line with an empty or NaN number, or one that is cut | a gap: the line is left out |
+//! | an empty `yaw` | the heading is not known: it is taken from the motion |
 //! | columns `planner` and `seed` with several runs | the lines of one of them |
 
 use super::{Row, Table, bad};
@@ -57,12 +58,15 @@ pub fn plain(table: &mut Table, choice: &RunChoice) -> Result<Vec<String>, Strea
 /// Leaves out the lines in which a number is missing.
 fn gaps(table: &mut Table, numbers: &[usize]) -> Result<Vec<String>, StreamError> {
     let (lines, last) = (table.rows.len(), table.last_line());
+    let yaw = table.column("yaw");
     let mut found: Vec<(usize, String)> = Vec::new();
     table.rows.retain(|row| {
         let ends = row.line == last;
         let why = numbers.iter().find_map(|at| match row.cell(*at).map(|cell| (cell, cell.parse::<f64>())) {
             None if ends => Some("is cut off".to_owned()),
             None => Some("has too few cells".to_owned()),
+            // A heading that is not known is taken from the motion.
+            Some(("", _)) if Some(*at) == yaw => None,
             Some(("", _)) => Some("has an empty number".to_owned()),
             Some((cell, Ok(value))) if !value.is_finite() => Some(format!("has `{cell}` for a number")),
             Some((cell, Err(_))) if ends => Some(format!("is cut off at `{cell}`")),
@@ -211,6 +215,9 @@ mod tests {
         same_as_the_table(&format!("{TABLE}0.4,rob"), "line 6 is cut off: taken as a gap");
         let most = made("t,id,x,y\n0,1,nan,0\n1,1,nan,0\n2,1,0,0\n", &RunChoice::default()).unwrap_err().to_string();
         assert!(most.contains("line 2") && most.contains("2 of 3 lines"), "{most}");
+        let blind = TABLE.replace("\n", ",\n").replacen("y,\n", "y,yaw\n", 1);
+        let (table, notes) = made(&blind, &RunChoice::default()).unwrap();
+        assert_eq!((notes.len(), read_table(&table).unwrap()), (0, read_tracks(TABLE).unwrap()));
         // A word is not a gap.
         let (table, _) = made("t,id,x,y\n0,1,one,2\n1,1,1,2\n", &RunChoice::default()).unwrap();
         assert!(read_table(&table).is_err());

@@ -7,6 +7,7 @@ use socrates_llm::{Cassette, ChatAnswer, ChatRequest, Finish, Speaker, Turn};
 use socrates_model::{AgentState, Location, Recording};
 use socrates_offline::Draft;
 use socrates_prompts::Question;
+use socrates_stream::ros::Bag;
 
 use super::mutate::{Chance, damaged};
 use crate::bundle::{self, Bundle};
@@ -22,6 +23,14 @@ const AGENTS: &str = include_str!("agents.yaml");
 const PLAN: &str = include_str!("../../../../maps/office/plan.toml");
 /// A table of prices.
 const PRICES: &str = "[\"gpt-4o\"]\ninput = 2.5\ncached_input = 1.25\noutput = 10\ncurrency = \"USD\"\nvalid_from = \"2026-01\"\n\n[other]\ninput = 1\noutput = 2\n";
+/// A bag of HuNavSim, neither compressed nor with checksums, and one that is compressed; both by a program of others.
+const BAG: &[u8] = include_bytes!("../../../../bus/stream/tests/data/hunav.mcap");
+const PACKED_BAG: &[u8] = include_bytes!("../../../../bus/stream/tests/data/walk.mcap");
+/// What makes a folder a bag.
+const METADATA: &str = "rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n  relative_file_paths:\n  - bag_0.mcap\n  \
+                        compression_format: ''\n  compression_mode: ''\n  message_count: 105\n";
+/// The folder of that bag.
+const BAG_FOLDER: &str = "bag";
 /// Sentences at a look of `--ask`.
 const EDITS: &[&str] = &[
     "make the robot's path longer",
@@ -78,6 +87,7 @@ pub(super) const DOORS: &[Door] = &[
     Door { name: "plans", names_file: true, samples: plans, open: open_plan },
     Door { name: "tables", names_file: true, samples: tables, open: open_tracks },
     Door { name: "recordings", names_file: true, samples: recordings, open: open_tracks },
+    Door { name: "bags", names_file: true, samples: bags, open: open_bag },
     Door { name: "bundles", names_file: true, samples: bundle_files, open: open_bundle },
     Door { name: "config", names_file: true, samples: configs, open: open_config },
     Door { name: "prices", names_file: true, samples: prices, open: open_prices },
@@ -154,7 +164,7 @@ impl Kit {
 /// The damaged form of a sample. Recordings are damaged once in two tries before they are written, so that their
 /// checksums are right.
 pub(super) fn damage(kit: &Kit, door: &Door, sample: &Sample, chance: &mut Chance) -> Vec<u8> {
-    let is_recording = sample.file.ends_with(".mcap");
+    let is_recording = sample.file.ends_with(".mcap") && !Bag::begins(&sample.bytes);
     if is_recording
         && chance.below(2) == 0
         && let Some(bytes) = kit.recording().and_then(|recording| rewritten(recording, chance))
@@ -300,6 +310,20 @@ fn open_tracks(
     _chance: &mut Chance,
 ) -> Result<(), Complaint> {
     tracks::score(&folder.join(&sample.file).display().to_string(), bytes, &Known::default()).map(drop)
+}
+
+fn bags(_kit: &Kit) -> Vec<Sample> {
+    vec![
+        sample(format!("{BAG_FOLDER}/metadata.yaml"), METADATA),
+        sample(format!("{BAG_FOLDER}/bag_0.mcap"), BAG),
+        sample("packed.mcap", PACKED_BAG),
+    ]
+}
+
+fn open_bag(_kit: &Kit, folder: &Path, sample: &Sample, _bytes: &[u8], _chance: &mut Chance) -> Result<(), Complaint> {
+    let is_inside = Path::new(&sample.file).starts_with(BAG_FOLDER);
+    let path = folder.join(if is_inside { BAG_FOLDER } else { sample.file.as_str() });
+    tracks::at(&path, &Known::default()).map(drop)
 }
 
 /// One file of the bundle.

@@ -1,4 +1,4 @@
-//! What looks wrong about the lines of a CSV of tracks before they are brought to an even step: reading puts lines in
+//! What looks wrong about the lines of a table of tracks before they are brought to an even step: reading puts lines in
 //! order, takes the first of two at one time and fills holes with straight lines, and would not tell.
 
 use std::collections::BTreeMap;
@@ -19,6 +19,40 @@ const LEAP_MPS: f64 = 20.0;
 /// Two places nearer to each other than this are one, m.
 const SAME_M: f64 = 1e-6;
 
+/// By what a line is found again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FoundBy {
+    /// Its number in the file.
+    Number,
+    /// Its time: the table was made of messages.
+    Time,
+}
+
+impl FoundBy {
+    fn place(self, fix: &Fix) -> String {
+        match self {
+            Self::Number => format!("line {}", fix.line),
+            Self::Time => format!("{:.2} s", fix.t),
+        }
+    }
+
+    /// Where a line puts somebody.
+    fn placed(self, fix: &Fix) -> String {
+        match self {
+            Self::Number => format!("({}, {}) in line {}", fix.x, fix.y, fix.line),
+            Self::Time => format!("({}, {})", fix.x, fix.y),
+        }
+    }
+
+    /// What somebody has at a time.
+    const fn word(self) -> &'static str {
+        match self {
+            Self::Number => "line",
+            Self::Time => "message",
+        }
+    }
+}
+
 /// One line: its number, time, place.
 #[derive(Debug, Clone, Copy)]
 struct Fix {
@@ -32,14 +66,16 @@ struct Fix {
 ///
 /// # Errors
 /// Somebody who is at two places at one time: no reading of that is right.
-pub(super) fn doubts(table: &Table) -> Result<Vec<String>, Complaint> {
+pub(super) fn doubts(table: &Table, by: FoundBy) -> Result<Vec<String>, Complaint> {
     let Some((agents, widest)) = read(table) else { return Ok(Vec::new()) };
     let mut found = Vec::new();
     for (id, fixes) in &agents {
         if let Some((a, b)) = fixes.iter().zip(fixes.iter().skip(1)).find(|(a, b)| b.t < a.t) {
             found.push(format!(
-                "line {}: the times of `{id}` go back from {} s to {} s: its lines are put in order",
-                b.line, a.t, b.t
+                "{}: the times of `{id}` go back from {} s to {} s: its lines are put in order",
+                by.place(b),
+                a.t,
+                b.t
             ));
         }
         let mut order = fixes.clone();
@@ -48,16 +84,13 @@ pub(super) fn doubts(table: &Table) -> Result<Vec<String>, Complaint> {
         let twice: Vec<(&Fix, &Fix)> = pairs().filter(|(a, b)| b.t <= a.t).collect();
         if let Some((a, b)) = twice.iter().find(|(a, b)| (a.x - b.x).hypot(a.y - b.y) > SAME_M) {
             return Err(Complaint::input(
-                format!(
-                    "`{id}` is at two places at {} s: ({}, {}) in line {} and ({}, {}) in line {}",
-                    a.t, a.x, a.y, a.line, b.x, b.y, b.line
-                ),
+                format!("`{id}` is at two places at {} s: {} and {}", a.t, by.placed(a), by.placed(b)),
                 "each person needs an id of its own: `human_1`, `human_2`, …; the robot is `robot` or 0",
             ));
         }
         if let Some((_, b)) = twice.first() {
             let more = if twice.len() > 1 { format!(", and {} more are", twice.len() - 1) } else { String::new() };
-            found.push(format!("line {}: `{id}` at {} s is there twice{more}: the first one counts", b.line, b.t));
+            found.push(format!("{}: `{id}` at {} s is there twice{more}: the first one counts", by.place(b), b.t));
         }
         let far = |(a, b): &(&Fix, &Fix)| (b.x - a.x).hypot(b.y - a.y);
         let leaps = |pair: &(&Fix, &Fix)| far(pair) > LEAP_M && far(pair) > LEAP_MPS * (pair.1.t - pair.0.t);
@@ -66,26 +99,32 @@ pub(super) fn doubts(table: &Table) -> Result<Vec<String>, Complaint> {
             let more = leaping.count();
             let more = if more > 0 { format!(", and {more} times more") } else { String::new() };
             found.push(format!(
-                "line {}: `{id}` jumps {:.0} m within {:.2} s from line {} on{more}: is it the same one?",
-                b.line,
+                "{}: `{id}` jumps {:.0} m within {:.2} s from {} on{more}: is it the same one?",
+                by.place(b),
                 far(&(a, b)),
                 b.t - a.t,
-                a.line
+                by.place(a)
             ));
         }
         let mut steps: Vec<f64> = pairs().map(|(a, b)| b.t - a.t).filter(|step| *step > 0.0).collect();
         steps.sort_by(f64::total_cmp);
         if let Some(step) = steps.get(steps.len() / 2).filter(|step| **step > SPARSE_SECS) {
             found.push(format!(
-                "`{id}` has a line every {step} s: are times in milliseconds or frames? Seconds are expected"
+                "`{id}` has a {} every {step} s: are times in milliseconds or frames? Seconds are expected",
+                by.word()
             ));
             continue;
         }
         let hole = pairs().map(|(a, b)| (b.t - a.t, a)).filter(|(length, _)| *length > HOLE_SECS);
         if let Some((length, from)) = hole.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            let line = match by {
+                FoundBy::Number => format!(" (line {})", from.line),
+                FoundBy::Time => String::new(),
+            };
             found.push(format!(
-                "`{id}` has no line for {length:.1} s from {} s on (line {}): taken as a straight line",
-                from.t, from.line
+                "`{id}` has no {} for {length:.1} s from {} s on{line}: taken as a straight line",
+                by.word(),
+                from.t
             ));
         }
     }
@@ -134,7 +173,7 @@ mod tests {
     }
 
     fn told(text: &str) -> Vec<String> {
-        doubts(&Table::read(text).unwrap()).unwrap()
+        doubts(&Table::read(text).unwrap(), FoundBy::Number).unwrap()
     }
 
     #[test]
@@ -172,11 +211,21 @@ mod tests {
         let twice = csv(|k, _| (k == 10).then(|| "1.0,robot,0.50,0,0\n1.0,robot,0.50,0,0".to_owned()));
         assert_eq!(told(&twice), ["line 23: `robot` at 1 s is there twice: the first one counts"]);
         let two = csv(|k, _| (k == 10).then(|| "1.0,robot,0.50,0,0\n1.0,robot,9,9,0".to_owned()));
-        let refused = doubts(&Table::read(&two).unwrap()).unwrap_err().to_string();
+        let refused = doubts(&Table::read(&two).unwrap(), FoundBy::Number).unwrap_err().to_string();
         assert!(
             refused.contains("`robot` is at two places at 1 s: (0.5, 0) in line 22 and (9, 9) in line 23"),
             "{refused}"
         );
+    }
+
+    #[test]
+    fn messages_are_found_by_their_time() {
+        let jump = csv(|k, t| (k == 30).then(|| format!("{t:.1},robot,500,0,0")));
+        let told = doubts(&Table::read(&jump).unwrap(), FoundBy::Time).unwrap();
+        assert!(told[0].starts_with("3.00 s: `robot` jumps 499 m within 0.10 s from 2.90 s on"), "{told:?}");
+        let holed = csv(|k, _| (20..45).contains(&k).then(String::new));
+        let told = doubts(&Table::read(&holed).unwrap(), FoundBy::Time).unwrap();
+        assert_eq!(told, ["`robot` has no message for 2.6 s from 1.9 s on: taken as a straight line"]);
     }
 
     #[test]

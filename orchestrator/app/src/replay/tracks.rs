@@ -1,13 +1,16 @@
 //! One recording from a file, ours or anybody's, scored with what is said of it on the command line.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use socrates_model::{AgentId, HumanId, Location, Point, Recording, Report};
 use socrates_scoring::Evidence;
 use socrates_stream::csv::{HUMAN_RADIUS_M, Named, ROBOT_RADIUS_M, ROBOT_SPEED_MPS, RunChoice, Table};
+use socrates_stream::ros::{Bag, Choice};
 use socrates_stream::{StreamError, mcap};
 
-use super::lines;
+use super::bags;
+use super::lines::{self, FoundBy};
 use crate::exit::Complaint;
 
 /// Radii that are believed, m.
@@ -21,8 +24,10 @@ pub(crate) struct Known {
     pub(crate) radius_m: Option<f64>,
     pub(crate) speed_mps: Option<f64>,
     pub(crate) groups: Vec<Group>,
-    /// The id of the robot in the file, where it is neither `robot` nor 0.
+    /// The id of the robot in the file, where it is neither `robot` nor 0; in a bag its topic or frame.
     pub(crate) robot: Option<String>,
+    /// The topic of the people in a bag.
+    pub(crate) people: Option<String>,
     /// Which run of a table of several.
     pub(crate) run: RunChoice,
 }
@@ -36,7 +41,12 @@ pub(crate) struct Scored {
     pub(crate) goal: Option<Point>,
     /// What looks wrong, what was mended, and what was assumed, in sentences.
     pub(crate) told: Vec<String>,
+    /// The table that a bag became.
+    pub(crate) table: Option<Table>,
 }
+
+/// What a table has.
+const TABLES: &str = "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, meters and radians; --robot ID says who is the robot where no id is `robot`";
 
 /// So many ids are told with their new names.
 const RENAMED: usize = 6;
@@ -47,6 +57,22 @@ struct Read {
     goal: Option<Point>,
     groups: Vec<Vec<HumanId>>,
     named: Named,
+    /// Agents whose radius the file names; nothing for a recording of ours, which names everybody's.
+    measured: Option<BTreeSet<AgentId>>,
+    table: Option<Table>,
+}
+
+/// Reads and scores what a path names: a file, or a bag of ROS 2. Nothing for a folder that is no bag.
+///
+/// # Errors
+/// What cannot be read, with what would be.
+pub(crate) fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Complaint> {
+    let name = path.display().to_string();
+    match bags::at(path)? {
+        Some(bag) => score_bag(&name, bag, known).map(Some),
+        None if path.is_dir() => Ok(None),
+        None => score(&name, &bags::bytes(path)?, known).map(Some),
+    }
 }
 
 /// Reads and scores the bytes of a file.
@@ -56,8 +82,48 @@ struct Read {
 pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, Complaint> {
     let mut told = Vec::new();
     let is_mcap = mcap::begins(bytes) || (bytes.is_empty() && name.ends_with(".mcap"));
-    let Read { mut recording, goal, groups, named } =
-        if is_mcap { ours(name, bytes, known, &mut told)? } else { table(name, bytes, known, &mut told)? };
+    if Bag::begins(bytes) {
+        return score_bag(name, bags::of_bytes(name, bytes)?, known);
+    }
+    let read = match (is_mcap, bags::other(bytes)) {
+        (true, _) => match ours(name, bytes, known, &mut told)? {
+            Some(read) => read,
+            None => return score_bag(name, bags::of_bytes(name, bytes)?, known),
+        },
+        (false, Some(other)) => return Err(other.refused(name)),
+        (false, None) => table(name, bytes, known, &mut told)?,
+    };
+    judged(name, read, known, told)
+}
+
+/// Scores a bag of ROS 2.
+///
+/// # Errors
+/// What is missing in it, with what mends it.
+fn score_bag(name: &str, bag: Bag, known: &Known) -> Result<Scored, Complaint> {
+    if known.run != RunChoice::default() {
+        return Err(Complaint::input(format!("`{name}` holds one run"), "--planner and --seed are for tables"));
+    }
+    let choice = Choice { robot: known.robot.clone(), people: known.people.clone() };
+    let found = bag.tracks(&choice).map_err(|why| bags::refused(name, &why))?;
+    let mut told = found.told;
+    let mut read = tabled(name, found.table, FoundBy::Time, None, &mut told)?;
+    let named = &read.named;
+    let mut measured = BTreeSet::new();
+    for info in &mut read.recording.header.agents {
+        let id = named.names.get(&info.agent).cloned().unwrap_or_else(|| info.agent.to_string());
+        let number = info.agent.number().to_string();
+        if let Some(radius) = found.radii_m.get(&id).or_else(|| found.radii_m.get(&number)) {
+            info.radius_m = *radius;
+            measured.insert(info.agent);
+        }
+    }
+    read.measured = Some(measured);
+    judged(name, read, known, told)
+}
+
+fn judged(name: &str, read: Read, known: &Known, mut told: Vec<String>) -> Result<Scored, Complaint> {
+    let Read { mut recording, goal, groups, named, measured, table } = read;
     let goal = known.goal.or(goal);
     let groups = if known.groups.is_empty() { groups } else { members(&known.groups, &recording, &named, &mut told) };
     if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
@@ -77,8 +143,8 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
             "a recording has at least two moments, finite numbers, rising times and one track for each agent",
         )
     })?;
-    if !is_mcap && tracks.robot.is_some() {
-        told.extend(assumed(known));
+    if let (Some(measured), Some(_)) = (&measured, &tracks.robot) {
+        told.extend(assumed(known, &recording, measured));
     }
     told.extend(renamed(&named));
     if tracks.robot.is_none() {
@@ -95,7 +161,7 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
                 .to_owned(),
         );
     }
-    Ok(Scored { recording, report, goal, told })
+    Ok(Scored { recording, report, goal, told, table })
 }
 
 /// Whom the file calls otherwise than the figures do.
@@ -128,28 +194,40 @@ fn members(groups: &[Group], recording: &Recording, named: &Named, told: &mut Ve
 }
 
 /// What is taken where nothing is said.
-fn assumed(known: &Known) -> Option<String> {
-    let mut parts = vec![format!("radius of people {HUMAN_RADIUS_M} m")];
-    if known.radius_m.is_none() {
+fn assumed(known: &Known, recording: &Recording, measured: &BTreeSet<AgentId>) -> Option<String> {
+    let mut parts = Vec::new();
+    let is_guessed = |agent: AgentId| !measured.contains(&agent);
+    if recording.header.agents.iter().any(|info| info.agent != AgentId::Robot && is_guessed(info.agent)) {
+        parts.push(format!("radius of people {HUMAN_RADIUS_M} m"));
+    }
+    if known.radius_m.is_none() && is_guessed(AgentId::Robot) {
         parts.push(format!("radius of the robot {ROBOT_RADIUS_M} m (--radius)"));
     }
     if known.speed_mps.is_none() {
         parts.push(format!("nominal speed of the robot {ROBOT_SPEED_MPS} m/s (--speed)"));
     }
-    Some(format!("assumed: {}", parts.join(", ")))
+    (!parts.is_empty()).then(|| format!("assumed: {}", parts.join(", ")))
 }
 
-fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
-    if known.robot.is_some() || known.run != RunChoice::default() {
+/// A recording of ours; nothing for one of others in which there may be messages of ROS 2.
+fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Option<Read>, Complaint> {
+    let rest = match mcap::read_rest(bytes) {
+        // A program that writes MCAP may leave out the profile of ROS 2.
+        Err(StreamError::Foreign { .. }) if bags::of_bytes(name, bytes).is_ok_and(|bag| bag.is_ros()) => {
+            return Ok(None);
+        }
+        rest => rest,
+    };
+    if known.robot.is_some() || known.people.is_some() || known.run != RunChoice::default() {
         return Err(Complaint::input(
             format!("`{name}` holds one run and names its robot"),
-            "--robot, --planner and --seed are for tables",
+            "--robot is for tables and bags, --people for bags, --planner and --seed for tables",
         ));
     }
-    let rest = mcap::read_rest(bytes).map_err(|why| {
+    let rest = rest.map_err(|why| {
         let hint = match &why {
             StreamError::Foreign { .. } => {
-                "MCAP files of `socrates run` and `socrates simulate` are read; of others, write a CSV with the columns t,id,x,y[,yaw,gesture]"
+                "MCAP files of `socrates run` and `socrates simulate` are read, and bags of ROS 2; of others, write a CSV with the columns t,id,x,y[,yaw,gesture]"
             }
             StreamError::Link { .. }
             | StreamError::Shm { .. }
@@ -167,32 +245,45 @@ fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Resu
             rest.recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
         told.push(format!("{why}: scored up to {last:.2} s"));
     }
-    Ok(Read { recording: rest.recording, goal: None, groups: Vec::new(), named: Named::default() })
+    let recording = rest.recording;
+    let (groups, named) = (Vec::new(), Named::default());
+    Ok(Some(Read { recording, goal: None, groups, named, measured: None, table: None }))
 }
 
 fn table(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
-    let bad = |why: String| {
-        Complaint::input(
-            format!("`{name}`: {why}"),
-            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, meters and radians; --robot ID says who is the robot where no id is `robot`",
-        )
-    };
+    let bad = |why: String| Complaint::input(format!("`{name}`: {why}"), TABLES);
+    if known.people.is_some() {
+        return Err(Complaint::input(format!("`{name}` is no bag of ROS 2"), "--people is for bags"));
+    }
     let text = std::str::from_utf8(bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
     let mut table = Table::read(text).map_err(|why| bad(why.to_string()))?;
     told.extend(socrates_stream::csv::plain(&mut table, &known.run).map_err(|why| bad(why.to_string()))?);
+    let read = tabled(name, table, FoundBy::Number, known.robot.as_deref(), told);
+    Ok(Read { table: None, ..read? })
+}
+
+/// What a table becomes, whoever made it.
+fn tabled(
+    name: &str,
+    mut table: Table,
+    by: FoundBy,
+    robot: Option<&str>,
+    told: &mut Vec<String>,
+) -> Result<Read, Complaint> {
+    let bad = |why: StreamError| Complaint::input(format!("`{name}`: {why}"), TABLES);
     // What looks wrong is reported with the ids of the file.
     let of_file = table.clone();
-    let named = socrates_stream::csv::named(&mut table, known.robot.as_deref()).map_err(|why| bad(why.to_string()))?;
-    let mut recording = socrates_stream::csv::read_table(&table).map_err(|why| bad(why.to_string()))?;
+    let named = socrates_stream::csv::named(&mut table, robot).map_err(bad)?;
+    let mut recording = socrates_stream::csv::read_table(&table).map_err(bad)?;
     let with_name = |why: Complaint| Complaint { what: format!("`{name}`: {}", why.what), ..why };
-    told.extend(lines::doubts(&of_file).map_err(with_name)?);
+    told.extend(lines::doubts(&of_file, by).map_err(with_name)?);
     for info in &mut recording.header.agents {
         if let Some(id) = named.names.get(&info.agent) {
             info.role.clone_from(id);
         }
     }
     let Columns { goal, groups } = Columns::read(&table);
-    Ok(Read { recording, goal, groups, named })
+    Ok(Read { recording, goal, groups, named, measured: Some(BTreeSet::new()), table: Some(of_file) })
 }
 
 /// What columns beside the tracks tell: `goal_x` and `goal_y` of the robot, `group` of people.

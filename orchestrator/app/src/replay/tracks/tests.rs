@@ -175,3 +175,44 @@ fn one_run_of_a_table_of_all_runs_is_scored() {
     assert!(!tells(&both, "is there twice"), "{:?}", both.told);
     assert_eq!(values(&both), values(&of(&text, &Known::default())));
 }
+
+/// A bag that rosbags wrote: the robot along y of `map` and two people, of whom one comes the other way.
+const BAG: &[u8] = include_bytes!("../../../../../bus/stream/tests/data/walk.mcap");
+
+#[test]
+fn a_bag_has_the_figures_of_the_table_of_the_same_motion() {
+    let bag = score("walk.mcap", BAG, &Known::default()).unwrap();
+    let mut text = String::from("t,id,x,y,yaw\n");
+    for k in 0..=140_u32 {
+        let t = f64::from(k) * 0.1;
+        let robot = 1.0 + (0.5 * t).min(6.0);
+        text.push_str(&format!("{t:.1},robot,2,{robot:.6},{:.6}\n", std::f64::consts::FRAC_PI_2));
+        text.push_str(&format!("{t:.1},ann,3,{:.6},\n{t:.1},bob,0.5,4,\n", 9.0 - 0.8 * t));
+    }
+    let table = of(&text, &Known { goal: Some(Point::new(2.0, 7.0)), ..Known::default() });
+    for ((id, of_bag), (_, of_table)) in values(&bag).into_iter().zip(values(&table)) {
+        let same = match (of_bag, of_table) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-3 * (1.0 + b.abs()),
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        assert!(same, "{id}: {of_bag:?} and {of_table:?}");
+    }
+    assert_eq!(bag.goal, Some(Point::new(2.0, 7.0)));
+    assert!(bag.table.is_some() && table.table.is_none());
+    let told = "assumed: radius of people 0.28 m, radius of the robot 0.25 m (--radius), nominal speed of the robot 0.8 m/s (--speed)";
+    assert!(tells(&bag, told) && tells(&bag, "`ann` is human_1"), "{:?}", bag.told);
+}
+
+#[test]
+fn radii_and_groups_of_hunavsim_count_and_those_of_the_user_count_more() {
+    let bytes = include_bytes!("../../../../../bus/stream/tests/data/hunav.mcap");
+    let scored = score("hunav.mcap", bytes, &Known::default()).unwrap();
+    let radii: Vec<String> =
+        scored.recording.header.agents.iter().map(|info| format!("{} {:.2}", info.agent, info.radius_m)).collect();
+    assert_eq!(radii, ["robot 0.30", "human_1 0.35", "human_2 0.40"]);
+    assert!(tells(&scored, "assumed: nominal speed of the robot 0.8 m/s (--speed)"), "{:?}", scored.told);
+    assert!(!tells(&scored, "radius of people"), "{:?}", scored.told);
+    assert!(value(&scored, "o_space_seconds").is_some(), "ann and bob are a group");
+    let wide = score("hunav.mcap", bytes, &Known { radius_m: Some(0.5), ..Known::default() }).unwrap();
+    assert!((wide.recording.header.agents[0].radius_m - 0.5).abs() < 1e-9);
+}
