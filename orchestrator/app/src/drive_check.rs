@@ -238,6 +238,7 @@ fn observed(session: u64, call: u32, people: u32, scan: &[f64]) -> Vec<u8> {
         vy: 0.0,
         omega: 0.0,
         people: &people,
+        robot: None,
         everybody: &Vec::new,
         doors: &[door],
         lidar: &Vec::new,

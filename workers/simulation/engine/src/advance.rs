@@ -79,6 +79,11 @@ impl Engine {
                 if looks {
                     self.near.look(human, &self.floor);
                 }
+                if let Some(want) = human.told() {
+                    wants.push(want);
+                    pairs.push(Pairs::default());
+                    continue;
+                }
                 // Somebody who gets on goes by what it made of the others at its last look.
                 let gets_on = human.gets_on() && now_s >= human.yields_until_s && !is_held_up(human);
                 around.clear();
@@ -107,7 +112,11 @@ impl Engine {
                     }
                     continue;
                 }
-                walker.steer(human, want, pairs, &steps);
+                if human.is_driven() {
+                    human.obey();
+                } else {
+                    walker.steer(human, want, pairs, &steps);
+                }
                 human.started |= human.gets_on() && want.target.is_some();
                 let yields = if want.target.is_some() { 1.0 } else { 0.02 };
                 bodies.push(Body { yields, ..body(human, human.at + human.velocity * STEP_SECS) });
@@ -175,6 +184,11 @@ impl Engine {
             .collect();
         let holders = rendezvous::holders(&self.humans, self.robot.as_ref());
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
+            if human.is_driven() {
+                // Nobody but their driver tells them; others of their group keep up with what they do.
+                paces.push(human.velocity.norm());
+                continue;
+            }
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let let_out = door.is_none_or(|on_way| !coming_out.contains(&on_way.door));
             let live = |on_way: &DoorOnWay| self.doors.doors.get(on_way.door);
