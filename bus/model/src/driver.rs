@@ -36,7 +36,7 @@ pub struct MissionMessage {
     pub mode: String,
     /// Body and limits of the one who is driven: the robot, or the person as an omnidirectional body.
     pub robot: RobotFile,
-    /// Who is driven, where it is a person and not the robot. Drivers of before do not know the key: no run of before has it.
+    /// The person who is driven; left out where that is the robot, as it was before people could be.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub person: Option<MissionPerson>,
     /// End of the way, m.
@@ -56,7 +56,7 @@ pub struct MissionMessage {
 /// The person who is driven.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MissionPerson {
-    /// Who.
+    /// Their number and name.
     pub id: HumanId,
     /// Role word: `employee`, `visitor`, `nurse` …
     pub role: String,

@@ -230,7 +230,7 @@ pub enum EventKind {
 /// or has left, and means nothing else.
 pub const ABSENT_LEAF: &str = "absent";
 
-/// Name of the leaf of somebody who is driven from outside: no tree of theirs runs, and what they do shows in their motion alone.
+/// Name of the leaf of somebody who is driven from outside: no tree moves them, and what they do shows in their motion alone.
 pub const DRIVEN_LEAF: &str = "external";
 
 /// What a reader needs to know before the first tick.

@@ -57,7 +57,7 @@ pub struct Request {
     /// The robot.
     #[serde(default)]
     pub robot: RobotRequest,
-    /// Who of the people is moved by a driver outside: `people = { human_2 = "external:mine" }`. The simulation alone looks here.
+    /// People whom drivers outside move instead of the simulation: `people = { human_2 = "external:mine" }`. No author looks here.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub people: BTreeMap<HumanId, PersonModel>,
     /// How to run.

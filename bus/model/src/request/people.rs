@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(drivers(""), []);
         let request = Request::of_toml(PLAIN, None).unwrap();
         assert_eq!(serde_json::to_value(&request).unwrap().get("people"), None, "what nobody states is not written");
-        assert!(request.people.get(&HumanId::new(1)).is_none());
+        assert!(!request.people.contains_key(&HumanId::new(1)));
     }
 
     #[test]

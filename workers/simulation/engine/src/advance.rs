@@ -79,11 +79,6 @@ impl Engine {
                 if looks {
                     self.near.look(human, &self.floor);
                 }
-                if let Some(want) = human.told() {
-                    wants.push(want);
-                    pairs.push(Pairs::default());
-                    continue;
-                }
                 // Somebody who gets on goes by what it made of the others at its last look.
                 let gets_on = human.gets_on() && now_s >= human.yields_until_s && !is_held_up(human);
                 around.clear();
@@ -112,11 +107,7 @@ impl Engine {
                     }
                     continue;
                 }
-                if human.is_driven() {
-                    human.obey();
-                } else {
-                    walker.steer(human, want, pairs, &steps);
-                }
+                walker.steer(human, want, pairs, &steps);
                 human.started |= human.gets_on() && want.target.is_some();
                 let yields = if want.target.is_some() { 1.0 } else { 0.02 };
                 bodies.push(Body { yields, ..body(human, human.at + human.velocity * STEP_SECS) });

@@ -169,16 +169,12 @@ fn a_gesture_of_a_driven_person_is_told_held_for_two_seconds_and_seen_by_the_rob
         Command { gesture, waiting: true, ..Command::default() }
     });
     let recording = run(made(), &mut driver);
-    let told: Vec<(f64, Option<Gesture>)> = recording
-        .events
-        .iter()
-        .filter_map(|event| match &event.kind {
-            EventKind::Gesture { agent, gesture, .. } if *agent == AgentId::Human(ONE) => {
-                Some((event.time.secs(), *gesture))
-            }
-            _ => None,
-        })
-        .collect();
+    let mut told = Vec::new();
+    for event in &recording.events {
+        if let EventKind::Gesture { agent: AgentId::Human(ONE), gesture, .. } = &event.kind {
+            told.push((event.time.secs(), *gesture));
+        }
+    }
     assert_eq!(told, [(3.0, Some(Gesture::Wait)), (5.0, None)]);
     assert_eq!(recording.tick(400)[1].gesture(), Some(Gesture::Wait));
 }

@@ -73,6 +73,9 @@ impl Walker {
 
     /// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
     pub(crate) fn steer(&mut self, human: &mut Human, want: &Want, pairs: &Pairs, scene: &Steps<'_>) {
+        if human.is_driven() {
+            return human.obey();
+        }
         let wished = match want.target {
             Some(target) if walks(want) => {
                 human.anchor = None;

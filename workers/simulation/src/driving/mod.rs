@@ -12,11 +12,14 @@ mod again;
 mod line;
 mod mission;
 mod over_bus;
+#[cfg(test)]
+mod people_tests;
 mod settings;
 #[cfg(test)]
 mod tests;
 
 use socrates_engine::Onlooker;
+pub use socrates_engine::body_of;
 use socrates_model::driver::{MissionPerson, Told};
 use socrates_model::{
     AgentId, AgentState, Command, Event, EventKind, Fault, FaultCode, HumanId, Observation, Point, RecordingHeader,
@@ -47,7 +50,7 @@ pub struct Wanted<'a> {
 }
 
 impl Wanted<'_> {
-    /// Who is driven.
+    /// The one who is driven: the robot, or a person.
     #[must_use]
     pub fn agent(&self) -> AgentId {
         self.person.map_or(AgentId::Robot, |person| person.id.into())
@@ -123,7 +126,7 @@ pub(crate) struct Kept {
 impl Kept {
     /// The driver that is wanted.
     pub(crate) fn begin(outside: &mut dyn Outside, wanted: &Wanted<'_>) -> Result<Self, Fault> {
-        let goal = wanted.person.and(wanted.mission.waypoints.last()).copied();
+        let goal = wanted.person.and_then(|_| wanted.mission.waypoints.last()).copied();
         Ok(Self { driver: outside.begin(wanted)?, commands: Vec::new(), goal })
     }
 

@@ -144,7 +144,8 @@ impl Remote {
             }
         };
         let lidar = if self.answer.lidar { (seen.lidar)() } else { Vec::new() };
-        step_bytes(&head, seen, &hidden, &lidar)
+        let robot = seen.robot.filter(|robot| robot.in_sight || self.answer.people == Shown::All);
+        step_bytes(&head, &Observation { robot, ..*seen }, &hidden, &lidar)
     }
 
     /// Takes the answer to a step.
