@@ -1,4 +1,4 @@
-"""Drive the robot of a SocRATES run from Python: a planner of your own, or a Gymnasium environment.
+"""Drive the robot of a SocRATES run from Python, or its people: a planner or pedestrian model of your own, or Gymnasium.
 
 One file; it needs `pip install eclipse-zenoh`, and for `SocratesEnv` also `pip install gymnasium` (which brings numpy).
 
@@ -12,7 +12,10 @@ One file; it needs `pip install eclipse-zenoh`, and for `SocratesEnv` also `pip 
     export PYTHONPATH=deploy/python              # the folder of this file
     socrates run my.toml --planner external:mine --driver "python3 my_planner.py"
 
-`examples/` beside this file holds a planner in thirty lines and a policy in the environment. The bytes are documented in docs/wire.md; this file reads and writes nothing else.
+A person of the request is driven by the same `act`, if `[people]` says so (`human_1 = "external:mine"`): `mission.person` tells who,
+`step.robot` is the robot as they see it, and speeds go in every direction: (v, vy, omega).
+
+`examples/` beside this file holds a planner and a person in thirty lines each, and a policy in the environment. The bytes are documented in docs/wire.md; this file reads and writes nothing else.
 """
 
 import atexit
@@ -38,17 +41,25 @@ _COMMAND = struct.Struct("<4sHHQII3d")
 _MAP = struct.Struct("<4sHHQQQ")
 
 Person = namedtuple("Person", "number in_sight gesture x y vx vy yaw radius")
-"""Somebody: number k of `human_k`, whether the robot sees them, the name of their gesture, center in m, velocity in m/s,
+"""Somebody: number k of `human_k`, or 0 for the robot where a person is driven, whether they are in sight, the name of their gesture, center in m, velocity in m/s,
 heading in rad, radius in m."""
 
-Step = namedtuple("Step", "session call time x y yaw v vy omega goal ahead people doors lidar")
-"""What the robot knows at one step: time in s, pose in m and rad, speeds in m/s and rad/s, goal and the point of
-the plan that is `look_ahead` ahead as (x, y), a list of `Person`, whether each door of the mission is open, ranges of 360 beams in m (beam 0 straight ahead, then
-counter-clockwise; infinite where nothing is hit; empty unless asked for)."""
+class Step(namedtuple("Step", "session call time x y yaw v vy omega goal ahead people doors lidar")):
+    """What the one who is driven, the robot or a person, knows at one step: time in s, pose in m and rad, speeds in m/s and rad/s, goal
+    and the point of the plan that is `look_ahead` ahead as (x, y), a list of `Person`, whether each door of the mission is open, ranges
+    of 360 beams in m (beam 0 straight ahead, then counter-clockwise; infinite where nothing is hit; empty unless asked for)."""
+
+    __slots__ = ()
+
+    @property
+    def robot(self):
+        """The robot as a `Person`, where a person is driven who is shown it; else None."""
+        return self.people[0] if self.people and self.people[0].number == 0 else None
+
 
 Command = namedtuple("Command", "v vy omega gesture waiting", defaults=(0.0, 0.0, 0.0, "NONE", False))
-"""What the robot is told: speeds forward and to the left in m/s, turning rate in rad/s, a gesture to begin, and whether it
-stands on purpose, so that it does not count as stuck."""
+"""What the one who is driven is told: speeds forward and to the left in m/s, turning rate in rad/s, a gesture to begin, and whether
+they stand on purpose, so that they do not count as stuck."""
 
 
 def read_step(data):
@@ -147,11 +158,17 @@ class Mission(dict):
 
     cells = b""
 
+    @property
+    def person(self):
+        """The person who is driven: `id`, `role`, `relation`, `behavior`, `pace_mps`, `meets`, `group`; None for the robot."""
+        return self.get("person")
+
 
 class Driver:
-    """Answers every step of every run that wants the planner `external:NAME`.
+    """Answers every step of every run that wants the planner `external:NAME`, or the model of a person of that name.
 
-    `act(step, mission)` gives the command. `begin(mission)` and `end(mission, end)` are called around a run, if given; what
+    `act(step, mission)` gives the command, for the robot and for each person who is driven; a run of several has a mission for each.
+    `begin(mission)` and `end(mission, end)` are called around a run, if given; what
     `begin` raises refuses the run. An exception in `act` ends that run alone.
     """
 

@@ -1,4 +1,4 @@
-//! Robots that programs in another language drive: the example planner, a Gymnasium environment, and drivers that fail.
+//! Robots and people that programs in another language drive: the examples, a Gymnasium environment, and drivers that fail.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -114,16 +114,109 @@ fn a_driver_that_dies_in_every_run_is_there_again_for_the_next_and_one_that_neve
     assert!(run.err.contains("ends by itself (exit status: 2)"), "{}", run.err);
 }
 
+/// The person who walks toward the robot, moved by a driver of this name.
+fn with_person(driver: &str) -> String {
+    format!("{WAREHOUSE}\n[people]\nhuman_1 = \"external:{driver}\"\n")
+}
+
+/// Where the first person is in the run of the reference robot, and the leaf that they are in.
+fn first_person(bundle: &Path) -> (Vec<(f64, f64)>, Vec<String>) {
+    let text = std::fs::read_to_string(bundle.join("agents.csv")).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().unwrap();
+    let column = |name: &str| head.iter().position(|cell| *cell == name).unwrap_or_else(|| panic!("{name}: {head:?}"));
+    let (planner, id, x, y, leaf) = (column("planner"), column("id"), column("x"), column("y"), column("leaf"));
+    let rows: Vec<_> = lines.filter(|row| (row[planner], row[id]) == ("reference", "human_1")).collect();
+    let places = rows.iter().map(|row| (row[x].parse().unwrap(), row[y].parse().unwrap())).collect();
+    let mut leaves: Vec<String> = rows.iter().map(|row| row[leaf].to_owned()).collect();
+    leaves.dedup();
+    (places, leaves)
+}
+
+#[test]
+fn the_example_person_walks_in_every_run_of_a_scenario_and_they_are_played_again_without_it() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let drives = format!("{} {}", python.display(), example("person.py"));
+    let more = ["--require", "any", "--planner", "reactive", "--driver", &drives];
+    let (run, json) = make(folder.path(), "person", &with_person("person"), &more);
+    assert_eq!(run.code, 0, "{} {}", run.out, run.err);
+    assert_eq!(json["runs"].as_array().map(Vec::len), Some(2), "{json}");
+    let bundle = folder.path().join("bundle-person");
+    let told = |run: &str| {
+        let text = std::fs::read_to_string(bundle.join(format!("details/commands/{run}.json"))).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()
+    };
+    for run in ["reference-1", "reactive-1"] {
+        let told = told(run);
+        assert_eq!((told.get("rate_hz"), told.get("commands")), (None, None), "{run}: nobody outside drives the robot");
+        let people = told["people"].as_object().unwrap();
+        let commands = people["human_1"]["commands"].as_array().unwrap();
+        assert!(people.len() == 1 && commands.len() > 50, "{run}: {}", commands.len());
+        let stood = commands.iter().filter(|command| command["waiting"] == true).count();
+        assert!(stood > 0 && stood < commands.len(), "{run}: they stop for the robot, {stood} of {}", commands.len());
+    }
+    let (places, leaves) = first_person(&bundle);
+    assert_eq!(leaves, ["external"]);
+    let (from, to) = (places[0], places[places.len() - 1]);
+    assert!((to.0 - from.0).hypot(to.1 - from.1) > 3.0, "{from:?} {to:?}");
+    let again = socrates(folder.path(), "again", &["simulate", &bundle.display().to_string()]);
+    assert_eq!(again.code, 0, "{} {}", again.out, again.err);
+    assert_eq!(again.out.matches("same hash as the bundle").count(), 2, "{}", again.out);
+    // Another run cannot be played without it.
+    let other = socrates(folder.path(), "other", &["simulate", &bundle.display().to_string(), "--planner", "rpp"]);
+    assert_eq!(other.code, 2, "{} {}", other.out, other.err);
+    assert!(other.err.contains("a driver outside drives in rpp-1"), "{}", other.err);
+}
+
+#[test]
+fn one_program_drives_the_robot_and_a_person_of_one_run() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let act = "sys.path.insert(0, os.environ['EXAMPLES'])\nimport person, planner\n\
+               def act(step, mission):\n    return (person if mission.person else planner).act(step, mission)";
+    let text = driver(folder.path(), act);
+    let drives = format!("env EXAMPLES={} {} {text}", example(""), python.display());
+    let more = ["--require", "any", "--planner", "external:mine", "--driver", &drives];
+    let (run, json) = make(folder.path(), "both", &with_person("mine"), &more);
+    assert_eq!(run.code, 0, "{} {}", run.out, run.err);
+    assert_eq!(json["runs"].as_array().map(Vec::len), Some(2), "{json}");
+    let bundle = folder.path().join("bundle-both");
+    let told = std::fs::read_to_string(bundle.join("details/commands/external.mine-1.json")).unwrap();
+    let told: Value = serde_json::from_str(&told).unwrap();
+    let count = |commands: &Value| commands.as_array().map_or(0, Vec::len);
+    assert!(count(&told["commands"]) > 50, "the robot");
+    assert_eq!(count(&told["people"]["human_1"]["commands"]), count(&told["commands"]), "and the person, as often");
+    let again = socrates(folder.path(), "again", &["simulate", &bundle.display().to_string()]);
+    assert_eq!(again.out.matches("same hash as the bundle").count(), 2, "{} {}", again.out, again.err);
+}
+
+#[test]
+fn a_driver_of_a_person_that_dies_ends_each_run_with_the_person_and_the_time() {
+    let Some(python) = driving() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let act = "def act(step, mission):\n    os._exit(3) if step.call == 30 else None\n    return 0.3, 0.0, 0.0";
+    let drives = format!("{} {}", python.display(), driver(folder.path(), act));
+    let (run, json) = make(folder.path(), "dies", &with_person("mine"), &["--require", "any", "--driver", &drives]);
+    assert_ne!(run.code, 0, "{} {}", run.out, run.err);
+    let all = format!("{json} {} {}", run.out, run.err);
+    assert!(all.contains("J-DRIVER") && all.contains("driver mine of human_1"), "{all}");
+    assert!(all.contains("at 3.00 s: it is gone"), "{all}");
+}
+
 #[test]
 fn a_driver_is_checked_message_by_message() {
     let Some(python) = driving() else { return };
     let folder = tempfile::tempdir().unwrap();
+    let person = format!("{} {}", python.display(), example("person.py"));
+    let checked = socrates(folder.path(), "person", &["drive", "check", "person", "--driver", &person]);
+    assert_eq!((checked.code, checked.out.matches("ok  ").count()), (0, 14), "{} {}", checked.out, checked.err);
     let good = format!("{} {}", python.display(), example("planner.py"));
     let checked = socrates(folder.path(), "good", &["drive", "check", "example", "--driver", &good]);
     assert_eq!(checked.code, 0, "{} {}", checked.out, checked.err);
     assert_eq!(
         (checked.out.matches("ok  ").count(), checked.out.matches("FAILED").count()),
-        (13, 0),
+        (14, 0),
         "{}",
         checked.out
     );

@@ -9,7 +9,7 @@
 //! | `live/orch/<id>`, `live/worker/<stage>/<instance>` | presence tokens | hastening |
 //! | `live/<run>/{meta,agents,ctl}` | put and query | live state of a run |
 //! | `serve/run` | query, served by `socrates serve` | the next run of a driver |
-//! | `drive/<name>/{mission,step}` | query, served by the driver of this name | a robot that is driven from outside |
+//! | `drive/<name>/{mission,step}` | query, served by the driver of this name | a robot, or a person, that is driven from outside |
 //! | `drive/<name>/claim/<id>` | presence token | the driver is there, and alone |
 
 use socrates_model::RunId;

@@ -1,4 +1,4 @@
-//! What passes between a simulated world and the planner that drives the robot.
+//! What passes between a simulated world and whoever drives the robot, or a person, in it.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,23 @@ pub struct SeenPerson {
     pub gesture: Option<Gesture>,
 }
 
+/// The robot as a person sees it who is driven from outside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeenRobot {
+    /// Center, m.
+    pub at: Point,
+    /// Velocity, m/s.
+    pub velocity: Vector,
+    /// Heading, rad.
+    pub yaw: f64,
+    /// Radius of its body, m.
+    pub radius_m: f64,
+    /// Gesture being made.
+    pub gesture: Option<Gesture>,
+    /// Whether the person has it in sight.
+    pub in_sight: bool,
+}
+
 /// A door as the robot sees it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenDoor {
@@ -44,21 +61,23 @@ pub struct Cues {
     pub leavers_inside: u32,
 }
 
-/// The world at the start of a planner call.
+/// The world at the start of a call, from the place of the one who is driven: the robot, or a person.
 pub struct Observation<'a> {
     /// Time of the run.
     pub time: SimTime,
-    /// Pose of the robot.
+    /// Pose of the one who is driven.
     pub pose: Pose,
     /// Forward speed, m/s.
     pub v: f64,
-    /// Speed to the left, m/s; 0 unless the base is omnidirectional.
+    /// Speed to the left, m/s; 0 for a robot unless its base is omnidirectional.
     pub vy: f64,
     /// Turning rate, rad/s.
     pub omega: f64,
-    /// People in line of sight, by id.
+    /// Other people in line of sight, by id.
     pub people: &'a [SeenPerson],
-    /// Everybody on the floor, in line of sight or not, by id; made when asked for.
+    /// The robot, for a person who is driven; nothing for the robot itself, and where there is none.
+    pub robot: Option<SeenRobot>,
+    /// Everybody else on the floor, in line of sight or not, by id; made when asked for.
     pub everybody: &'a dyn Fn() -> Vec<SeenPerson>,
     /// Doors of the location.
     pub doors: &'a [SeenDoor],
@@ -73,7 +92,7 @@ pub struct Observation<'a> {
 pub struct Command {
     /// Forward speed, m/s.
     pub v: f64,
-    /// Speed to the left, m/s; of no effect unless the base is omnidirectional.
+    /// Speed to the left, m/s; of no effect on a robot unless its base is omnidirectional.
     #[serde(default)]
     pub vy: f64,
     /// Turning rate, rad/s.
@@ -81,12 +100,12 @@ pub struct Command {
     /// A gesture to begin now; it is held for 2 s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gesture: Option<Gesture>,
-    /// Whether the robot stands on purpose (a stated wait), so that it does not count as stuck.
+    /// Whether the robot, or the person, stands on purpose (a stated wait), so that they do not count as stuck.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub waiting: bool,
 }
 
-/// Whoever drives the robot.
+/// Whoever drives the robot, or a person.
 pub trait RobotDriver {
     /// Calls per simulated second; called at the first tick at or after n divided by this.
     fn rate_hz(&self) -> f64 {

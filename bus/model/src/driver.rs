@@ -2,13 +2,16 @@
 //!
 //! JSON, so that a program in any language reads it in a line; `docs/wire.md` is the manual.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::drive::Command;
 use crate::hash::Digest;
-use crate::ids::{HumanId, RunId};
+use crate::ids::{AgentId, HumanId, RunId};
 use crate::lockstep::VERSION;
 use crate::planner_name::PlannerName;
+use crate::proposal::Relation;
 use crate::robot::RobotFile;
 
 /// A point of the map, m.
@@ -25,26 +28,48 @@ pub struct MissionMessage {
     pub session: u64,
     /// The run.
     pub run: RunId,
-    /// The planner's name: `external:` and that of the driver.
+    /// `external:` and the name of the driver that is asked.
     pub planner: PlannerName,
     /// The seed of the run.
     pub seed: u64,
     /// `step`, `wait` or `free`.
     pub mode: String,
-    /// Body and limits of the robot.
+    /// Body and limits of the one who is driven: the robot, or the person as an omnidirectional body.
     pub robot: RobotFile,
-    /// End of the robot's way, m.
+    /// The person who is driven; left out where that is the robot, as it was before people could be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub person: Option<MissionPerson>,
+    /// End of the way, m.
     pub goal: At,
-    /// Points that it has to pass, start first, goal last, m.
+    /// Points that it leads through, start first, goal last, m.
     pub waypoints: Vec<At>,
     /// The shortest free way through them, m; shut doors and people are not looked at.
     pub plan: Vec<At>,
     /// Doors, in the order in which the steps tell whether they are open.
     pub doors: Vec<MissionDoor>,
-    /// Everybody who may be met.
+    /// Everybody else who may be met.
     pub people: Vec<HumanId>,
     /// The map, without its cells.
     pub map: MissionMap,
+}
+
+/// The person who is driven.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MissionPerson {
+    /// Their number and name.
+    pub id: HumanId,
+    /// Role word: `employee`, `visitor`, `nurse` …
+    pub role: String,
+    /// How they stand to the robot's way.
+    pub relation: Relation,
+    /// What they are meant to do, in sentences; the verdict judges whether it is seen.
+    pub behavior: String,
+    /// The pace at which they would walk by themselves, m/s; their limit is `v_max_mps` of `robot`.
+    pub pace_mps: f64,
+    /// Where they are to meet the robot, one after the other, m.
+    pub meets: Vec<At>,
+    /// The others of their group.
+    pub group: Vec<HumanId>,
 }
 
 /// A door of the map.
@@ -84,7 +109,7 @@ pub struct MissionAnswer {
     /// Steps per simulated second, 1 to 100. Default 10.
     #[serde(default = "ten")]
     pub rate_hz: f64,
-    /// How far ahead of the robot the point of the plan is that each step tells, 0.1 to 20 m. Default 0.8.
+    /// How far ahead of the one who is driven the point of the plan is that each step tells, 0.1 to 20 m. Default 0.8.
     #[serde(default = "look_ahead")]
     pub look_ahead_m: f64,
     /// Which people it wants to be shown.
@@ -113,7 +138,7 @@ const fn look_ahead() -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shown {
-    /// Those in the robot's line of sight.
+    /// Those in sight of the one who is driven.
     #[default]
     Seen,
     /// Everybody.
@@ -189,19 +214,70 @@ pub struct EndMessage {
     pub reason: String,
     /// When it ended, simulated, s.
     pub time_s: f64,
-    /// Whether the robot arrived.
+    /// Whether the one who is driven arrived at the end of their way.
     pub arrived: bool,
 }
 
-/// Every command that a driver outside gave in a run, in order: with them the run is played again without it.
+/// Every command that drivers outside gave in a run, in order: with them the run is played again without any driver.
+///
+/// The robot's stand where they stood before people could be driven, so that files of before are read, and a file without driven
+/// people is the same to the byte. A reader of before passes over `people`; it refuses the request that names them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Commands {
     /// Format number, see [`crate::FORMAT`].
     pub format: u32,
+    /// Steps per simulated second of the robot's driver; nothing where no driver outside drove it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_hz: Option<f64>,
+    /// The robot's commands as they were applied, one for each step.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub commands: Vec<Command>,
+    /// Those of every person who was driven.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub people: BTreeMap<HumanId, Told>,
+}
+
+/// What one driver told one body in a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Told {
     /// Steps per simulated second.
     pub rate_hz: f64,
     /// The commands as they were applied, one for each step.
     pub commands: Vec<Command>,
+}
+
+impl Default for Commands {
+    fn default() -> Self {
+        Self { format: crate::FORMAT, rate_hz: None, commands: Vec::new(), people: BTreeMap::new() }
+    }
+}
+
+impl Commands {
+    /// The same with what the driver of one more told it.
+    #[must_use]
+    pub fn with(mut self, agent: AgentId, told: Told) -> Self {
+        match agent {
+            AgentId::Robot => (self.rate_hz, self.commands) = (Some(told.rate_hz), told.commands),
+            AgentId::Human(id) => drop(self.people.insert(id, told)),
+        }
+        self
+    }
+
+    /// What was told to somebody; nothing where no driver outside drove them.
+    #[must_use]
+    pub fn of(&self, agent: AgentId) -> Option<Told> {
+        match agent {
+            AgentId::Robot => self.rate_hz.map(|rate_hz| Told { rate_hz, commands: self.commands.clone() }),
+            AgentId::Human(id) => self.people.get(&id).cloned(),
+        }
+    }
+
+    /// Whether nobody was driven.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rate_hz.is_none() && self.people.is_empty()
+    }
 }
 
 #[cfg(test)]
@@ -212,6 +288,34 @@ mod tests {
     fn the_least_answer_is_a_version() {
         let answer = MissionAnswer::read(br#"{"version": 1}"#).unwrap();
         assert_eq!((answer.rate_hz, answer.people, answer.lidar, answer.map), (10.0, Shown::Seen, false, false));
+    }
+
+    /// Commands as bundles of before hold them.
+    const OF_BEFORE: &str = r#"{"format":1,"rate_hz":10.0,"commands":[{"v":0.5,"vy":0.0,"omega":0.1},{"v":0.0,"vy":0.0,"omega":0.0,"gesture":"WAIT","waiting":true}]}"#;
+
+    #[test]
+    fn commands_of_before_are_read_and_written_as_they_were() {
+        let read: Commands = serde_json::from_str(OF_BEFORE).unwrap();
+        let robot = read.of(AgentId::Robot).unwrap();
+        assert_eq!((robot.rate_hz, robot.commands.len(), robot.commands[1].waiting), (10.0, 2, true));
+        assert!(read.people.is_empty() && read.of(HumanId::new(1).into()).is_none());
+        assert_eq!(serde_json::to_string(&read).unwrap(), OF_BEFORE);
+    }
+
+    #[test]
+    fn commands_of_people_stand_beside_those_of_the_robot_or_alone() {
+        let told = |rate_hz, v| Told { rate_hz, commands: vec![Command { v, ..Command::default() }] };
+        let alone = Commands::default().with(HumanId::new(2).into(), told(20.0, 1.0));
+        let text = r#"{"format":1,"people":{"human_2":{"rate_hz":20.0,"commands":[{"v":1.0,"vy":0.0,"omega":0.0}]}}}"#;
+        assert_eq!(serde_json::to_string(&alone).unwrap(), text);
+        assert_eq!(serde_json::from_str::<Commands>(text).unwrap(), alone);
+        assert!(alone.of(AgentId::Robot).is_none() && !alone.is_empty() && Commands::default().is_empty());
+        let both = alone.with(AgentId::Robot, told(10.0, 0.4));
+        assert_eq!(both.of(AgentId::Robot), Some(told(10.0, 0.4)));
+        assert_eq!(both.of(HumanId::new(2).into()), Some(told(20.0, 1.0)));
+        let written = serde_json::to_string(&both).unwrap();
+        assert!(written.starts_with(r#"{"format":1,"rate_hz":10.0,"commands":["#), "{written}");
+        assert_eq!(serde_json::from_str::<Commands>(&written).unwrap(), both);
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! Little endian throughout; `docs/wire.md` has every offset. What is longer than this version knows is skipped by the lengths
 //! that the head states.
 
-use crate::drive::{Command, Observation, SeenPerson};
+use crate::drive::{Command, Observation, SeenPerson, SeenRobot};
 use crate::geometry::Point;
 use crate::gesture::Gesture;
 use crate::ids::HumanId;
@@ -34,10 +34,13 @@ const COMMAND: [u8; 4] = *b"SOCC";
 const GIVES_UP: [u8; 4] = *b"SOCE";
 const MAP: [u8; 4] = *b"SOCM";
 
-/// In a person's flags: the robot has them in line of sight.
+/// In a person's flags: the one who is driven has them in sight.
 const IN_SIGHT: u16 = 1;
-/// In a command's flags: the robot stands on purpose.
+/// In a command's flags: the one who is driven stands on purpose.
 const WAITING: u32 = 1;
+
+/// Number of the robot among the people of a step, for a person who is driven; the least of `human_k` is 1.
+const ROBOT: u32 = 0;
 
 /// Which step of which run it is, and where the robot is to go.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,9 +49,9 @@ pub struct StepHead {
     pub session: u64,
     /// Number of the step, from 0.
     pub call: u32,
-    /// End of the robot's way, m.
+    /// End of the way of the one who is driven, m.
     pub goal: Point,
-    /// The point of the plan that is so far ahead of the robot as the driver asked for, m; the goal at last.
+    /// The point of the plan that is so far ahead of them as the driver asked for, m; the goal at last.
     pub ahead: Point,
 }
 
@@ -59,13 +62,15 @@ pub struct Step {
     pub head: StepHead,
     /// Time of the run, s.
     pub time_s: f64,
-    /// Pose of the robot.
+    /// Pose of the one who is driven.
     pub pose: Pose,
     /// Forward, to the left, m/s.
     pub velocity: (f64, f64),
     /// Turning rate, rad/s.
     pub omega: f64,
-    /// People, by number, and whether the robot has them in line of sight.
+    /// The robot, for a person who is driven.
+    pub robot: Option<SeenRobot>,
+    /// Other people, by number, and whether they are in sight.
     pub people: Vec<(SeenPerson, bool)>,
     /// Whether each door of the mission is open.
     pub doors: Vec<bool>,
@@ -123,11 +128,56 @@ impl Reader<'_> {
     }
 }
 
+/// Somebody in the list of people.
+struct Listed {
+    number: u32,
+    in_sight: bool,
+    gesture: Option<Gesture>,
+    at: Point,
+    velocity: Vector,
+    yaw: f64,
+    radius_m: f64,
+}
+
+impl Listed {
+    const fn robot(robot: &SeenRobot) -> Self {
+        let SeenRobot { at, velocity, yaw, radius_m, gesture, in_sight } = *robot;
+        Self { number: ROBOT, in_sight, gesture, at, velocity, yaw, radius_m }
+    }
+
+    const fn person(person: &SeenPerson, in_sight: bool) -> Self {
+        let SeenPerson { id, at, velocity, yaw, radius_m, gesture } = *person;
+        Self { number: id.number(), in_sight, gesture, at, velocity, yaw, radius_m }
+    }
+
+    fn put(&self, to: &mut Writer) {
+        to.put(self.number.to_le_bytes());
+        to.put(if self.in_sight { IN_SIGHT } else { 0 }.to_le_bytes());
+        to.put(u16::from(Gesture::code_of(self.gesture)).to_le_bytes());
+        let numbers = [self.at.x, self.at.y, self.velocity.x, self.velocity.y, self.yaw, self.radius_m];
+        numbers.into_iter().for_each(|value| to.real(value));
+    }
+
+    fn read(from: &mut Reader<'_>, person_bytes: usize) -> Option<Self> {
+        let (number, flags, code) = (from.u32()?, from.u16()?, from.u16()?);
+        let at = Point::new(from.real()?, from.real()?);
+        let velocity = Vector::new(from.real()?, from.real()?);
+        let (yaw, radius_m) = (from.real()?, from.real()?);
+        from.skip(person_bytes.checked_sub(PERSON_BYTES)?)?;
+        let gesture = u8::try_from(code).ok().and_then(|code| Gesture::from_code(code).ok()).flatten();
+        Some(Self { number, in_sight: flags & IN_SIGHT != 0, gesture, at, velocity, yaw, radius_m })
+    }
+}
+
 /// The bytes of a step. `everybody` are shown beside those in sight, where the driver asked for all; `lidar` likewise.
 #[must_use]
 #[expect(clippy::cast_possible_truncation, reason = "a lidar tells no more than a 32-bit number holds")]
 pub fn step_bytes(head: &StepHead, seen: &Observation<'_>, hidden: &[SeenPerson], lidar: &[f64]) -> Vec<u8> {
-    let people = seen.people.len() + hidden.len();
+    let mut all: Vec<Listed> = seen.robot.iter().map(Listed::robot).collect();
+    all.extend(seen.people.iter().map(|person| Listed::person(person, true)));
+    all.extend(hidden.iter().map(|person| Listed::person(person, false)));
+    all.sort_by_key(|one| one.number);
+    let people = all.len();
     let room = HEAD_BYTES + PERSON_BYTES * people + seen.doors.len() + 4 + 4 * lidar.len();
     let mut to = Writer(Vec::with_capacity(room));
     to.put(OBSERVATION);
@@ -144,16 +194,7 @@ pub fn step_bytes(head: &StepHead, seen: &Observation<'_>, hidden: &[SeenPerson]
     let goals = [head.goal.x, head.goal.y, head.ahead.x, head.ahead.y];
     let moves = [seen.v, seen.vy, seen.omega];
     [seen.time.secs()].into_iter().chain(pose).chain(moves).chain(goals).for_each(|value| to.real(value));
-    let mut both: Vec<(&SeenPerson, u16)> = seen.people.iter().map(|person| (person, IN_SIGHT)).collect();
-    both.extend(hidden.iter().map(|person| (person, 0)));
-    both.sort_by_key(|(person, _)| person.id);
-    for (person, flags) in both {
-        to.put(person.id.number().to_le_bytes());
-        to.put(flags.to_le_bytes());
-        to.put(u16::from(Gesture::code_of(person.gesture)).to_le_bytes());
-        let numbers = [person.at.x, person.at.y, person.velocity.x, person.velocity.y, person.yaw, person.radius_m];
-        numbers.into_iter().for_each(|value| to.real(value));
-    }
+    all.iter().for_each(|one| one.put(&mut to));
     to.0.extend(seen.doors.iter().map(|door| u8::from(door.open)));
     while !to.0.len().is_multiple_of(4) {
         to.0.push(0);
@@ -180,21 +221,20 @@ pub fn read_step(bytes: &[u8]) -> Option<Step> {
     let goal = Point::new(from.real()?, from.real()?);
     let ahead = Point::new(from.real()?, from.real()?);
     from.skip(head_bytes.checked_sub(HEAD_BYTES)?)?;
-    let person = |from: &mut Reader<'_>| {
-        let (number, flags, code) = (from.u32()?, from.u16()?, from.u16()?);
-        let at = Point::new(from.real()?, from.real()?);
-        let velocity = Vector::new(from.real()?, from.real()?);
-        let (yaw, radius_m) = (from.real()?, from.real()?);
-        from.skip(person_bytes.checked_sub(PERSON_BYTES)?)?;
-        let gesture = u8::try_from(code).ok().and_then(|code| Gesture::from_code(code).ok()).flatten();
-        Some((SeenPerson { id: HumanId::new(number), at, velocity, yaw, radius_m, gesture }, flags & IN_SIGHT != 0))
-    };
-    let people = (0..people).map(|_| person(&mut from)).collect::<Option<Vec<_>>>()?;
+    let (mut robot, mut others) = (None, Vec::new());
+    for _ in 0..people {
+        let Listed { number, in_sight, gesture, at, velocity, yaw, radius_m } = Listed::read(&mut from, person_bytes)?;
+        if number == ROBOT {
+            robot = Some(SeenRobot { at, velocity, yaw, radius_m, gesture, in_sight });
+        } else {
+            others.push((SeenPerson { id: HumanId::new(number), at, velocity, yaw, radius_m, gesture }, in_sight));
+        }
+    }
     let open = from.0.get(..doors)?.iter().map(|byte| *byte != 0).collect();
     from.skip(doors.next_multiple_of(4))?;
     let lidar = (0..beams).map(|_| from.take().map(f32::from_le_bytes)).collect::<Option<Vec<f32>>>()?;
     let head = StepHead { session, call, goal, ahead };
-    Some(Step { head, time_s, pose, velocity, omega, people, doors: open, lidar })
+    Some(Step { head, time_s, pose, velocity, omega, robot, people: others, doors: open, lidar })
 }
 
 /// The bytes of a command.
@@ -267,7 +307,7 @@ pub enum BadCommand {
         /// Step that asked.
         asked: u32,
     },
-    /// A number that no robot can be told.
+    /// A number that nobody can be told.
     #[error("`{name}` is {value}; allowed are finite numbers")]
     NotFinite {
         /// Which number.
@@ -345,7 +385,7 @@ mod tests {
         }
     }
 
-    fn written(lidar: &[f64]) -> (StepHead, Vec<u8>) {
+    fn written(robot: Option<SeenRobot>, lidar: &[f64]) -> (StepHead, Vec<u8>) {
         let head = StepHead { session: 77, call: 3, goal: Point::new(9.0, 1.0), ahead: Point::new(4.0, 1.0) };
         let door = |open| SeenDoor { id: "d".into(), from: Point::origin(), to: Point::origin(), open };
         let observation = Observation {
@@ -355,6 +395,7 @@ mod tests {
             vy: 0.1,
             omega: -0.2,
             people: &[person(2, 3.0)],
+            robot,
             everybody: &Vec::new,
             doors: &[door(true), door(false)],
             lidar: &Vec::new,
@@ -365,7 +406,7 @@ mod tests {
 
     #[test]
     fn a_step_is_read_as_it_was_written_and_has_the_stated_length() {
-        let (head, bytes) = written(&[1.0, f64::INFINITY]);
+        let (head, bytes) = written(None, &[1.0, f64::INFINITY]);
         assert_eq!(bytes.len(), HEAD_BYTES + 2 * PERSON_BYTES + 4 + 2 * 4);
         let step = read_step(&bytes).unwrap();
         assert_eq!((step.head, step.time_s, step.pose.yaw), (head, 1.5, -0.5));
@@ -381,8 +422,29 @@ mod tests {
     }
 
     #[test]
+    fn for_a_person_the_robot_is_the_first_of_the_people_with_the_number_0() {
+        let robot = SeenRobot {
+            at: Point::new(6.0, 2.0),
+            velocity: Vector::new(-0.5, 0.0),
+            yaw: 3.0,
+            radius_m: 0.2,
+            gesture: Some(Gesture::ExcuseMe),
+            in_sight: true,
+        };
+        let (_, bytes) = written(Some(robot), &[]);
+        assert_eq!(bytes.len(), HEAD_BYTES + 3 * PERSON_BYTES + 4);
+        assert_eq!((&bytes[20..22], &bytes[120..124]), (&3_u16.to_le_bytes()[..], &0_u32.to_le_bytes()[..]));
+        assert_eq!(bytes[128..136], 6.0_f64.to_le_bytes());
+        let step = read_step(&bytes).unwrap();
+        assert_eq!(step.robot, Some(robot));
+        assert_eq!(step.people, [(person(1, 8.0), false), (person(2, 3.0), true)]);
+        let (_, hidden) = written(Some(SeenRobot { in_sight: false, ..robot }), &[]);
+        assert!(!read_step(&hidden).unwrap().robot.unwrap().in_sight);
+    }
+
+    #[test]
     fn a_step_that_is_cut_off_is_none() {
-        let (_, bytes) = written(&[1.0]);
+        let (_, bytes) = written(None, &[1.0]);
         for length in 0..bytes.len() {
             assert!(read_step(&bytes[..length]).is_none(), "{length}");
         }

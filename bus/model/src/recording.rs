@@ -230,6 +230,9 @@ pub enum EventKind {
 /// or has left, and means nothing else.
 pub const ABSENT_LEAF: &str = "absent";
 
+/// Name of the leaf of somebody who is driven from outside: no tree moves them, and what they do shows in their motion alone.
+pub const DRIVEN_LEAF: &str = "external";
+
 /// What a reader needs to know before the first tick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -7,6 +7,7 @@ mod author;
 mod form;
 #[cfg(test)]
 mod form_tests;
+mod people;
 mod read;
 mod steps;
 mod tree;
@@ -27,6 +28,8 @@ pub use values::{Duration, Moment, Seeds};
 use crate::fault::FaultCode;
 use crate::form::{Form, PlaceWord, RobotStep};
 use crate::gesture::Gesture;
+use crate::ids::HumanId;
+use crate::person_model::PersonModel;
 use crate::place::PlaceClass;
 use crate::planner_name::PlannerName;
 use crate::robot::RobotModel;
@@ -54,6 +57,9 @@ pub struct Request {
     /// The robot.
     #[serde(default)]
     pub robot: RobotRequest,
+    /// People whom drivers outside move instead of the simulation: `people = { human_2 = "external:mine" }`. No author looks here.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub people: BTreeMap<HumanId, PersonModel>,
     /// How to run.
     #[serde(default)]
     pub run: RunRequest,

@@ -1,6 +1,7 @@
 //! What the script of the report page plays and lists, as JSON.
 
 use serde_json::{Value, json};
+use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::{Action, ClauseRole, Event, EventKind, Location, Point, Reading, Recording, Report};
 
 use crate::facts::fact_words;
@@ -123,6 +124,7 @@ fn spoken(tag: &str) -> String {
         Some(action) => action.phrase(),
         // The tag does not say whom.
         None if tag == "FollowHuman" => "follows another human".to_owned(),
+        None if tag == DRIVEN_LEAF => "is moved by a driver outside".to_owned(),
         None => format!("runs {}", parted(tag)),
     }
 }
@@ -171,5 +173,6 @@ mod tests {
         assert_eq!(spoken("BlockRobot"), "blocks the robot");
         assert_eq!(spoken("wait"), "runs wait");
         assert_eq!(spoken("RegularNav"), "walks on");
+        assert_eq!(spoken(DRIVEN_LEAF), "is moved by a driver outside");
     }
 }

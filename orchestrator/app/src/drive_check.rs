@@ -4,14 +4,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
-use socrates_model::driver::{EndMessage, MissionAnswer, MissionDoor, MissionMap, MissionMessage};
+use socrates_model::driver::{EndMessage, MissionAnswer, MissionDoor, MissionMap, MissionMessage, MissionPerson};
 use socrates_model::lockstep::{self, HEAD_BYTES, PERSON_BYTES, StepHead, read_command, step_bytes};
 use socrates_model::robot::RobotFile;
 use socrates_model::{
-    Cues, Digest, HumanId, Observation, PlannerName, Point, Pose, RobotModel, RunId, SeenDoor, SeenPerson, SimTime,
-    Vector,
+    Cues, Digest, HumanId, Observation, PlannerName, Point, Pose, Relation, RobotModel, RunId, SeenDoor, SeenPerson,
+    SeenRobot, SimTime, Vector,
 };
-use socrates_simulation::driving::{Line, told};
+use socrates_simulation::driving::{Line, body_of, told};
 
 use crate::config::Config;
 use crate::driver_process::DriverCommand;
@@ -111,7 +111,7 @@ impl Exam {
                 return findings;
             }
         };
-        let answer = self.mission(1).await;
+        let answer = self.mission(1, None).await;
         note("declares its claim", claims.alone().await);
         let told = answer.as_ref().map(|answer| format!("{} steps a second", answer.rate_hz)).map_err(Clone::clone);
         if !note("answers its mission", told) {
@@ -121,12 +121,12 @@ impl Exam {
             note("takes the map in parts", self.map(1).await);
         }
         let scan = vec![f64::INFINITY; if answer.is_ok_and(|answer| answer.lidar) { 360 } else { 0 }];
-        let step = |session, call, people, longer| self.step(session, call, people, longer, &scan);
+        let step = |session, call, people, longer| self.step((session, call), people, (longer, false), &scan);
         note("answers a step without people", step(1, 0, 0, false).await);
         note("answers a step with 1 person", step(1, 1, 1, false).await);
         note("answers a step with 50 people", step(1, 2, 50, false).await);
         note("skips what a later version adds", step(1, 3, 2, true).await);
-        let second = self.mission(2).await.map(|_| String::new());
+        let second = self.mission(2, None).await.map(|_| String::new());
         if note("takes a second run beside the first", second) {
             let both = async {
                 step(2, 0, 1, false).await?;
@@ -136,6 +136,7 @@ impl Exam {
             note("keeps two runs apart", both.await);
             note("takes note of the end of one", self.end(2).await);
         }
+        note("takes the mission of a person", self.drives_a_person(&scan).await);
         note("stays alive after bytes that are no step", self.garbage().await);
         note("answers as before after them", step(1, 5, 1, false).await);
         note("answers 200 steps", self.timed(&scan).await);
@@ -143,7 +144,7 @@ impl Exam {
         findings
     }
 
-    async fn mission(&self, session: u64) -> Result<MissionAnswer, String> {
+    async fn mission(&self, session: u64, person: Option<MissionPerson>) -> Result<MissionAnswer, String> {
         let cells = vec![0_u8; SIDE * SIDE];
         let message = MissionMessage {
             socrates: "mission".to_owned(),
@@ -153,7 +154,8 @@ impl Exam {
             planner: self.name.clone(),
             seed: session,
             mode: "step".to_owned(),
-            robot: RobotFile::from(&RobotModel::default()),
+            robot: RobotFile::from(&person.as_ref().map_or_else(RobotModel::default, |one| body_of(one.id, 0.28))),
+            person,
             goal: [12.0, 7.5],
             waypoints: vec![[2.0, 7.5], [7.0, 7.5], [12.0, 7.5]],
             plan: vec![[2.0, 7.5], [12.0, 7.5]],
@@ -175,8 +177,31 @@ impl Exam {
         self.line.map(session, &[0; SIDE * SIDE]).await.map(|()| format!("{} cells", SIDE * SIDE))
     }
 
-    async fn step(&self, session: u64, call: u32, people: u32, longer: bool, scan: &[f64]) -> Result<String, String> {
-        let bytes = observed(session, call, people, scan);
+    /// A session in which the driver is a person among two others, with a robot before them.
+    async fn drives_a_person(&self, scan: &[f64]) -> Result<String, String> {
+        let person = MissionPerson {
+            id: HumanId::new(3),
+            role: "visitor".to_owned(),
+            relation: Relation::Frontal,
+            behavior: "Comes toward the robot.".to_owned(),
+            pace_mps: 1.2,
+            meets: vec![[7.0, 7.5]],
+            group: Vec::new(),
+        };
+        self.mission(3, Some(person)).await?;
+        let told = self.step((3, 0), 2, (false, true), scan).await?;
+        self.end(3).await?;
+        Ok(told)
+    }
+
+    async fn step(
+        &self,
+        (session, call): (u64, u32),
+        people: u32,
+        (longer, robot): (bool, bool),
+        scan: &[f64],
+    ) -> Result<String, String> {
+        let bytes = observed((session, call), people, robot, scan);
         let bytes = if longer { lengthened(&bytes) } else { bytes };
         let answer = self.line.step(bytes, PATIENCE).await.map_err(|why| told(&why))?;
         let command = read_command(&answer, session, call).map_err(|bad| bad.to_string())?;
@@ -194,7 +219,7 @@ impl Exam {
         let mut times = Vec::new();
         for call in 6..6 + TIMED {
             let begun = Instant::now();
-            self.step(1, call, 3, false, scan).await?;
+            self.step((1, call), 3, (false, false), scan).await?;
             times.push(begun.elapsed());
         }
         times.sort();
@@ -209,8 +234,8 @@ impl Exam {
     }
 }
 
-/// A step with so many people in rows before the robot.
-fn observed(session: u64, call: u32, people: u32, scan: &[f64]) -> Vec<u8> {
+/// A step with so many people in rows ahead, and with the robot, where a person is driven.
+fn observed((session, call): (u64, u32), people: u32, robot: bool, scan: &[f64]) -> Vec<u8> {
     let person = |number: u32| {
         let (row, column) = (f64::from(number / 7), f64::from(number % 7));
         let away = Vector::new(1.0 + row, column - 3.0);
@@ -230,6 +255,14 @@ fn observed(session: u64, call: u32, people: u32, scan: &[f64]) -> Vec<u8> {
         to: Point::new(9.0, 8.0),
         open: call.is_multiple_of(2),
     };
+    let before = SeenRobot {
+        at: Point::new(5.0, 7.5),
+        velocity: Vector::new(-0.3, 0.0),
+        yaw: std::f64::consts::PI,
+        radius_m: 0.25,
+        gesture: None,
+        in_sight: true,
+    };
     let head = StepHead { session, call, goal: Point::new(12.0, 7.5), ahead: Point::new(3.8, 7.5) };
     let seen = Observation {
         time: SimTime::at_tick(u64::from(call) * 10),
@@ -238,6 +271,7 @@ fn observed(session: u64, call: u32, people: u32, scan: &[f64]) -> Vec<u8> {
         vy: 0.0,
         omega: 0.0,
         people: &people,
+        robot: robot.then_some(before),
         everybody: &Vec::new,
         doors: &[door],
         lidar: &Vec::new,
@@ -271,9 +305,9 @@ mod tests {
 
     #[test]
     fn a_longer_step_is_read_like_the_short_one() {
-        let short = observed(7, 2, 3, &[1.0; 4]);
+        let short = observed((7, 2), 3, true, &[1.0; 4]);
         let long = lengthened(&short);
-        assert_eq!(long.len(), short.len() + 8 * 4);
+        assert_eq!(long.len(), short.len() + 8 * 5);
         assert_eq!(lockstep::read_step(&long).unwrap(), lockstep::read_step(&short).unwrap());
     }
 }

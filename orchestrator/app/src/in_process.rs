@@ -141,7 +141,7 @@ pub(crate) fn simulate(
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
     let mut keeper = Keeper::default();
-    socrates_simulation::simulate_into(setup, driven(request, run), &mut Nobody, &mut keeper)?;
+    socrates_simulation::simulate_into(setup, Driven::of(request, &run.planner), &mut Nobody, &mut keeper)?;
     keeper.recording().ok_or_else(|| vec![ours("the run ended before its first tick".to_owned())])
 }
 
@@ -160,12 +160,7 @@ pub(crate) fn simulate_into(
 ) -> Result<Option<Commands>, Vec<Fault>> {
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
-    socrates_simulation::simulate_into(setup, driven(request, run), outside, onlooker)
-}
-
-/// The driver of a run of a request.
-fn driven<'a>(request: &'a Request, run: &'a Run) -> Driven<'a> {
-    Driven { planner: &run.planner, nav2: request.robot.nav2.get(&run.planner).map(String::as_str) }
+    socrates_simulation::simulate_into(setup, Driven::of(request, &run.planner), outside, onlooker)
 }
 
 /// All that the judge may look at in a run of the reference robot.

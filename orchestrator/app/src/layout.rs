@@ -136,8 +136,12 @@ pub const TREES: Sheet =
 pub const RECORDINGS: Sheet =
     Sheet::new("details/recordings/*.mcap", "simulation", When::EachRun, "states and events of the run");
 /// Commands.
-pub const COMMANDS: Sheet =
-    Sheet::new("details/commands/*.json", "simulation", When::EachDrivenRun, "what the driver outside told the robot");
+pub const COMMANDS: Sheet = Sheet::new(
+    "details/commands/*.json",
+    "simulation",
+    When::EachDrivenRun,
+    "what drivers outside told the robot and people",
+);
 /// Reports.
 pub const REPORTS: Sheet =
     Sheet::new("details/reports/*.json", "scoring", When::EachRun, "metrics, verdict and narrative of the run");

@@ -8,7 +8,8 @@ use serde::de::DeserializeOwned;
 use socrates_export::socrates_json::Imported;
 use socrates_model::request::ServerKind;
 use socrates_model::{
-    AuthorSpec, Breadth, Fault, FaultCode, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds,
+    AuthorSpec, Breadth, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlannerName, Proposal, Reading, Request,
+    Role, ScenarioId, Seeds,
 };
 
 use crate::config::Config;
@@ -61,8 +62,13 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// Whether a driver outside drives in any of its runs.
     pub(crate) fn is_driven(&self) -> bool {
-        self.request.robot.planners.iter().any(|planner| planner.external().is_some())
+        is_driven(&self.request)
     }
+}
+
+/// Whether a driver outside drives the robot or a person in any run of a request.
+fn is_driven(request: &Request) -> bool {
+    !request.people.is_empty() || request.robot.planners.iter().any(|planner| planner.external().is_some())
 }
 
 /// Every request file named on the command line, folders opened.
@@ -155,6 +161,7 @@ pub(crate) fn prepare_text(
     if let Some(file) = &request.behaviors {
         pins.insert(Role::Behaviors, read_pin(Role::Behaviors, &folder.join(file), |all| all.behaviors)?);
     }
+    check_people(&request, &reading, &pins, shown)?;
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
     // What a language model would read out of the task is not known beforehand.
     if author == AuthorSpec::Offline && !pins.contains_key(&Role::Proposal) && !pins.contains_key(&Role::Paths) {
@@ -234,6 +241,32 @@ fn check_ways(reading: &Reading, request: &Request, location: &Location, shown: 
     ))
 }
 
+/// People who are driven must be there: a pinned proposal says who is, or the reading, where the request says how many.
+fn check_people(
+    request: &Request,
+    reading: &Reading,
+    pins: &BTreeMap<Role, String>,
+    shown: &str,
+) -> Result<(), Complaint> {
+    let pinned = pins.get(&Role::Proposal).and_then(|text| serde_json::from_str::<Proposal>(text).ok());
+    let stated = |fact: &Fact| if let FactKind::Humans(count) = fact.kind { Some(count) } else { None };
+    let read = || reading.facts.iter().find_map(stated).map(|count| (1..=count).map(HumanId::new).collect());
+    let there = pinned.map(|proposal| proposal.humans.iter().map(|human| human.id).collect()).or_else(read);
+    let Some(there): Option<Vec<HumanId>> = there else { return Ok(()) };
+    let missing = request.people.iter().filter(|(id, _)| !there.contains(id));
+    let causes: Vec<String> = missing
+        .map(|(id, model)| format!("J-REQUEST {shown} `people.{id}`: `{model}` is to drive somebody who is not there"))
+        .collect();
+    if causes.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<String> = there.iter().map(ToString::to_string).collect();
+    let names = if names.is_empty() { "nobody".to_owned() } else { names.join(", ") };
+    let what = format!("the request `{shown}` names people who are not in it");
+    let hint = format!("there is {names}; `socrates read {}` shows who does what", files::shell(Path::new(shown)));
+    Err(Complaint { causes, ..Complaint::input(what, hint) })
+}
+
 /// The settings of `--inject`.
 fn injected(text: &str) -> Result<BTreeMap<String, String>, Complaint> {
     let mut settings = BTreeMap::new();
@@ -269,11 +302,10 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
         }
         request.robot.planners.clone_from(&options.planner);
     }
-    let is_driven = request.robot.planners.iter().any(|planner| planner.external().is_some());
-    if options.driver.is_some() && !is_driven {
+    if options.driver.is_some() && !is_driven(request) {
         return Err(Complaint::input(
-            "`--driver` starts a driver outside, and no planner is one",
-            "add --planner external:NAME with the name that the driver gives itself",
+            "`--driver` starts a driver outside, and no planner and no person's model is one",
+            "add --planner external:NAME with the name that the driver gives itself, or name it in [people] of the request",
         ));
     }
     if let Some(variants) = options.variants {

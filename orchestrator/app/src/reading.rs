@@ -10,6 +10,9 @@ pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
         "planners   {}",
         prepared.request.robot.planners.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
     ));
+    for (id, model) in &prepared.request.people {
+        talk.line(&format!("driven     {id} by {model}, not by the simulation"));
+    }
     for statement in &prepared.reading.statements {
         talk.line(&format!("{:<11}\"{}\" → {}", statement.fate(), one_line(&statement.quote), statement.told()));
     }

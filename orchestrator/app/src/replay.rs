@@ -75,16 +75,28 @@ pub(crate) fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result
         Made { proposal: bundle.proposal.clone(), paths: bundle.paths.clone(), behaviors: bundle.behaviors.clone() };
     let mut scribe = Scribe::new(path, Some(&bundle.location));
     let scene = (&bundle.request, &bundle.location);
-    // A driver outside need not be there again: what it told the robot is in the bundle.
-    let mut outside: Box<dyn Outside> = match run.planner.external() {
-        Some(_) => Box::new(Again::new(bundle::commands(&bundle.dir, run)?)),
-        None => Box::new(Nobody),
+    // A driver outside need not be there again: what it told the robot, or a person, is in the bundle.
+    let is_driven = run.planner.external().is_some() || !bundle.request.people.is_empty();
+    let mut outside: Box<dyn Outside> = if is_driven {
+        let known = bundle.manifest.runs.iter().any(|entry| entry.run() == *run);
+        let commands = bundle::commands(&bundle.dir, run).map_err(|why| if known { why } else { not_driven(run) })?;
+        Box::new(Again::new(commands))
+    } else {
+        Box::new(Nobody)
     };
     let played = in_process::simulate_into(scene, made, run.id(&scenario), run, outside.as_mut(), &mut scribe);
     played.map_err(|faults| {
         Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
     })?;
     scribe.finish()
+}
+
+/// Another run than those of the bundle cannot be played where a driver outside would have to answer.
+fn not_driven(run: &Run) -> Complaint {
+    Complaint::input(
+        format!("a driver outside drives in {run}, and its commands are not in the bundle"),
+        "`socrates run BUNDLE/request.toml --driver COMMAND` asks it; the runs of the bundle itself need no driver",
+    )
 }
 
 /// Scores a bundle again, one file of tracks, or a bag of ROS 2.

@@ -40,6 +40,8 @@ mod asked;
 #[cfg(test)]
 mod crowds;
 #[cfg(test)]
+mod driven;
+#[cfg(test)]
 mod fixture;
 #[cfg(test)]
 mod idle;

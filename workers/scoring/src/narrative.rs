@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::Standing;
 use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, HumanId};
 
@@ -90,6 +91,7 @@ fn told(signals: &Signals<'_>, event: &Event) -> Option<String> {
             None if Action::ChangePace(0.0).is_leaf(leaf) => format!("{human} changes pace"),
             None if Action::LookAt(*human).is_leaf(leaf) => format!("{human} stops and looks at another human"),
             None if Action::FollowHuman(*human).is_leaf(leaf) => format!("{human} follows {}", leader(signals, *human)),
+            None if leaf == DRIVEN_LEAF => format!("a driver outside moves {human}"),
             None => format!("{human} runs {leaf}"),
         },
         EventKind::StepEnded { human, step } => format!("step {step} of {human} is over"),

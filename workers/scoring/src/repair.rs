@@ -1,6 +1,7 @@
 //! What should be done again when the scenario did not happen, with the reasons its author reads next.
 
 use socrates_model::job::Stage;
+use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::{Repair, Standing};
 use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict, Where};
 
@@ -10,9 +11,10 @@ use crate::score::is_meeting;
 use crate::tracks::TrackFault;
 
 /// The repair a verdict asks for, if it is the scenario's fault. Only the run with the reference
-/// robot can tell; what another planner prevented is its own result.
+/// robot can tell; what another planner prevented is its own result, and so is what somebody did whom a driver outside moved.
 pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> Option<Repair> {
-    if !evidence.recording.header.planner.is_reference() {
+    let header = &evidence.recording.header;
+    if !header.planner.is_reference() || header.leaves.iter().any(|leaf| leaf == DRIVEN_LEAF) {
         return None;
     }
     let mut faults: Vec<(Stage, Fault)> = Vec::new();

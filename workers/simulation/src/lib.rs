@@ -5,8 +5,9 @@
 //!                                          └─► recording ─► MCAP + summary
 //! ```
 //!
-//! Modules in reading order: the pure run ([`simulate()`]), robots that are driven from outside ([`driving`]), what is said about it ([`summary`]), how
-//! fast it plays for viewers ([`pace`]), and the worker's stage (`stage`, feature `mcap`).
+//! Modules in reading order: the pure run ([`simulate()`], with the ways and the parts of people that drivers are told), robots and people
+//! that are driven from outside ([`driving`]), what is said about it ([`summary`]), how fast it plays for viewers ([`pace`]), and the
+//! worker's stage (`stage`, feature `mcap`).
 //!
 //! *Never here:* another stage, the orchestrator, the store, a metric, a verdict.
 
@@ -16,6 +17,9 @@ pub mod simulate;
 #[cfg(feature = "mcap")]
 pub mod stage;
 pub mod summary;
+
+mod people;
+mod ways;
 
 #[cfg(test)]
 #[expect(clippy::print_stdout, reason = "what went wrong in which of many runs is told run by run")]

@@ -177,7 +177,7 @@ fault_codes! {
     "M-ROUTE" MRoute Semantic Remedy::Repair, true, "an edge crosses walls and was routed round them";
     "M-TYPE" MType Semantic Remedy::Repair, true, "a type of the scene graph says nothing";
     "J-PLANNER" JPlanner Permanent Remedy::Stop, false, "there is no such planner";
-    "J-DRIVER" JDriver Permanent Remedy::Stop, false, "a driver outside did not drive the robot";
+    "J-DRIVER" JDriver Permanent Remedy::Stop, false, "a driver outside did not drive the robot, or a person";
     "J-SPEC" JSpec Poison Remedy::Stop, false, "a job cannot be decoded";
     "J-PANIC" JPanic Poison Remedy::Stop, false, "a worker broke on this job";
     "J-BLOB" JBlob Transient Remedy::Wait, false, "an artifact could not be fetched or stored";

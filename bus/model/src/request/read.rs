@@ -24,13 +24,14 @@ use crate::planner_name::PlannerName;
 use crate::robot::RobotModel;
 
 /// Keys of a request.
-const KEYS: [&str; 15] = [
+const KEYS: [&str; 16] = [
     "location",
     "social_context",
     "task",
     "rough_scenario",
     "location_description",
     "robot",
+    "people",
     "run",
     "expect",
     "waive",
@@ -222,6 +223,7 @@ impl Door<'_> {
         let expect = top.get("expect").map(|node| self.expect(node)).unwrap_or_default();
         self.names(&form, &names);
         self.against(&form, &expect, &top);
+        let people = top.get("people").map(|node| self.people(node, &form, &expect)).unwrap_or_default();
         let rough_scenario = self.text(&top, "rough_scenario");
         let texts = [rough_scenario.as_deref(), task.as_deref(), social_context.as_deref()];
         let waive = top.get("waive").map(|node| self.waive(node, &texts)).unwrap_or_default();
@@ -230,6 +232,7 @@ impl Door<'_> {
             waive,
             location_description: self.text(&top, "location_description"),
             robot,
+            people,
             form,
             run: top.get("run").map(|node| self.run(node)).unwrap_or_default(),
             expect,

@@ -76,7 +76,7 @@ pub(crate) struct Options {
     /// a probability per ask.
     #[arg(long, value_name = "KIND=RATE,…", default_value = "")]
     inject: String,
-    /// Start this command with the run: a driver for `--planner external:NAME`. It finds the bus by SOCRATES_ENDPOINT and
+    /// Start this command with the run: a driver for `--planner external:NAME`, or for people of `[people]`. It finds the bus by SOCRATES_ENDPOINT and
     /// SOCRATES_NAMESPACE, and leaves when its standard input closes.
     #[arg(long, value_name = "COMMAND")]
     driver: Option<String>,

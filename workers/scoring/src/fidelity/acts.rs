@@ -100,7 +100,7 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         Err(never) => return never,
     };
     // Who looks by a rule looks while its leaf runs; one who only happens to face the robot was not startled.
-    let by_rule = signals.tells_leaves
+    let by_rule = signals.tells_leaves_of(human)
         && signals
             .evidence
             .proposal
@@ -390,7 +390,7 @@ pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> V
     let (marks, kept_s) = motion(signals, human, action);
     let shown = stretches(marks, kept_s);
     let leaves = signals.leaves_of(human);
-    if leaves.is_empty() && !signals.tells_leaves {
+    if leaves.is_empty() && !signals.tells_leaves_of(human) {
         if *action == Action::RunAway {
             return turns_away(signals, human, &shown);
         }
@@ -432,7 +432,7 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
         Action::TurnBack | Action::GoTo { .. } => way_m() >= GOES_M,
         // Somebody who stands there facing the robot all the time has not looked up. By their tree they turn however little.
         Action::LookAtRobot => {
-            let turned_rad = if signals.tells_leaves { TURNED_LITTLE_RAD } else { TURNED_RAD };
+            let turned_rad = if signals.tells_leaves_of(human) { TURNED_LITTLE_RAD } else { TURNED_RAD };
             stops_or_turns(signals, human, (from, to), turned_rad)
         }
         Action::Navigate | Action::StandStill | Action::Block | Action::LookAt(_) | Action::ChangePace { .. } => true,

@@ -1,6 +1,7 @@
 //! Leaves of behavior trees as the recording tells them: who ran what, from when to when.
 
-use socrates_model::{EventKind, Recording};
+use socrates_model::recording::DRIVEN_LEAF;
+use socrates_model::{EventKind, HumanId, Recording};
 
 use crate::tracks::Track;
 
@@ -15,7 +16,7 @@ pub struct LeafSpan {
     pub name: String,
 }
 
-/// Spans of a human's leaves: from events where there are any, else from the states.
+/// Spans of a human's leaves: from events where there are any, else from the states. Somebody who is driven from outside has none.
 #[must_use]
 pub(super) fn leaf_spans(recording: &Recording, track: &Track) -> Vec<LeafSpan> {
     let Some(id) = track.human() else { return Vec::new() };
@@ -42,7 +43,20 @@ pub(super) fn leaf_spans(recording: &Recording, track: &Track) -> Vec<LeafSpan> 
     starts
         .into_iter()
         .zip(ends)
-        .filter(|((_, name), _)| !name.is_empty())
+        .filter(|((_, name), _)| !name.is_empty() && name != DRIVEN_LEAF)
         .map(|((from_s, name), to_s)| LeafSpan { from_s, to_s, name })
         .collect()
+}
+
+/// Whether somebody is driven from outside: by no tree, so that their motion alone tells what they do.
+#[must_use]
+pub(super) fn is_driven(recording: &Recording, track: &Track) -> bool {
+    let Some(id) = track.human() else { return false };
+    let told = |human: &HumanId, leaf: &str| *human == id && leaf == DRIVEN_LEAF;
+    let by_event = recording
+        .events
+        .iter()
+        .any(|event| if let EventKind::Leaf { human, leaf } = &event.kind { told(human, leaf) } else { false });
+    let number = recording.header.leaves.iter().position(|leaf| leaf == DRIVEN_LEAF);
+    by_event || track.samples.first().is_some_and(|sample| number == Some(usize::from(sample.leaf)))
 }

@@ -342,7 +342,7 @@ fn leads(signals: &Signals<'_>, reach_m: f64, from_s: f64) -> Finding {
         let leaves = signals.leaves_of(human);
         let follows = |t: f64| {
             let mut own = leaves.iter().filter(|span| Action::FollowRobot.is_leaf(&span.name));
-            !signals.tells_leaves || own.any(|span| t >= span.from_s && t <= span.to_s)
+            !signals.tells_leaves_of(human) || own.any(|span| t >= span.from_s && t <= span.to_s)
         };
         // Nobody is left behind who has not come up to the robot yet.
         let own = signals

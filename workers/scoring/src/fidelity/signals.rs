@@ -10,7 +10,7 @@ use socrates_model::{AgentId, EventKind, HumanId, NodeId, Point};
 
 use crate::evidence::Evidence;
 use crate::fidelity::doors::Doors;
-use crate::fidelity::leaves::{LeafSpan, leaf_spans};
+use crate::fidelity::leaves::{LeafSpan, is_driven, leaf_spans};
 use crate::fidelity::times::{Meeting, meetings_of};
 use crate::tracks::{MOVING_MPS, Sample, Track, Tracks};
 
@@ -77,7 +77,9 @@ pub struct Signals<'a> {
     /// Running leaves by human; empty where the recording tells none.
     pub leaves: BTreeMap<HumanId, Vec<LeafSpan>>,
     /// Whether the recording tells leaves of anybody: then one who has none does nothing by its tree.
-    pub tells_leaves: bool,
+    tells_leaves: bool,
+    /// People who are driven from outside.
+    driven: Vec<HumanId>,
     /// When the robot first moves, s; infinite where it never does.
     pub moves_s: f64,
     /// When the robot arrived, s.
@@ -132,6 +134,8 @@ impl<'a> Signals<'a> {
             .filter_map(|track| Some((track.human()?, leaf_spans(evidence.recording, track))))
             .collect();
         let tells_leaves = leaves.values().any(|spans| !spans.is_empty());
+        let driven = tracks.humans.iter().filter(|track| is_driven(evidence.recording, track));
+        let driven = driven.filter_map(Track::human).collect();
         let moves = full.robot.as_ref().and_then(|robot| robot.present().find(|sample| sample.speed() > MOVING_MPS));
         let moves_s = moves.map_or(f64::INFINITY, |sample| sample.t);
         let arrived_s = evidence
@@ -149,6 +153,7 @@ impl<'a> Signals<'a> {
             doors,
             leaves,
             tells_leaves,
+            driven,
             moves_s,
             arrived_s,
             ground,
@@ -168,6 +173,12 @@ impl<'a> Signals<'a> {
     #[must_use]
     pub fn leaves_of(&self, human: HumanId) -> &[LeafSpan] {
         self.leaves.get(&human).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether leaves tell what this human does by their tree; where they do not, their motion alone decides.
+    #[must_use]
+    pub fn tells_leaves_of(&self, human: HumanId) -> bool {
+        self.tells_leaves && !self.driven.contains(&human)
     }
 
     /// Position of a node.

@@ -173,7 +173,7 @@ fn does(signals: &Signals<'_>, human: HumanId, rule: &Rule, reason_s: f64) -> Re
     let same = |act: &Action| std::mem::discriminant(act) == std::mem::discriminant(&rule.act);
     let by_other = others(signals, human, rule).any(|other| same(&other.act));
     let stands = matches!(rule.act, Action::StandStill | Action::Navigate);
-    if let Some(early) = early.filter(|_| has_onset(&rule.act) && !by_other && signals.tells_leaves) {
+    if let Some(early) = early.filter(|_| has_onset(&rule.act) && !by_other && signals.tells_leaves_of(human)) {
         return Err(early);
     }
     match after {
@@ -233,7 +233,8 @@ fn kept_s(signals: &Signals<'_>, human: HumanId, rule: &Rule, (from_s, to_s): (f
     let (marks, _) = motion(signals, human, &rule.act);
     let runs = |t: f64| {
         let mut spans = signals.leaves_of(human).iter().filter(|span| rule.act.is_leaf(&span.name));
-        !signals.tells_leaves || spans.any(|span| t >= span.from_s - MOMENT_SECS && t <= span.to_s + MOMENT_SECS)
+        !signals.tells_leaves_of(human)
+            || spans.any(|span| t >= span.from_s - MOMENT_SECS && t <= span.to_s + MOMENT_SECS)
     };
     // Recordings are sampled more or less often.
     let pairs = marks.iter().zip(marks.iter().skip(1));

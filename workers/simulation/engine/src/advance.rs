@@ -175,6 +175,11 @@ impl Engine {
             .collect();
         let holders = rendezvous::holders(&self.humans, self.robot.as_ref());
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
+            if human.is_driven() {
+                // Nobody but their driver tells them; others of their group keep up with what they do.
+                paces.push(human.velocity.norm());
+                continue;
+            }
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let let_out = door.is_none_or(|on_way| !coming_out.contains(&on_way.door));
             let live = |on_way: &DoorOnWay| self.doors.doors.get(on_way.door);

@@ -12,7 +12,7 @@ pub const V_MAX: f64 = 1.95;
 /// Turning rate of somebody who stands and turns, rad/s.
 const TURN_STANDING: f64 = PI;
 /// Turning rate of the heading of somebody who walks, rad/s.
-const TURN_WALKING: f64 = TAU;
+pub const TURN_WALKING: f64 = TAU;
 /// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
 const KEEP: (f64, f64) = (12.0, 7.0);
 

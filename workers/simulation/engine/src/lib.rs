@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
-//! (human, view, robot, script), how they move (near, motion, block, make_room, walk, [`gait`], lanes, [`models`], advance,
-//! [`contacts`]), how they meet
+//! (human, view, robot, script), how they move (near, motion, block, make_room, walk, [`gait`], lanes, [`models`], driven,
+//! advance, [`contacts`]), how they meet
 //! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
 //! ([`run`], drive).
 //!
@@ -28,6 +28,7 @@ mod advance;
 mod block;
 mod cells;
 mod drive;
+mod driven;
 mod ending;
 mod ends;
 mod gathering;
@@ -54,6 +55,8 @@ mod aisle_runs;
 #[cfg(test)]
 mod door_runs;
 #[cfg(test)]
+mod driven_runs;
+#[cfg(test)]
 mod end_runs;
 #[cfg(test)]
 mod fixture;
@@ -70,6 +73,8 @@ mod tests;
 
 pub use contacts::{Body, Touch, resolve};
 pub use doors::event_names;
+pub use drive::Drivers;
+pub use driven::body_of;
 pub use floor::Floor;
 pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
 pub use models::HumanModel;

@@ -1,4 +1,4 @@
-//! How people walk: by social forces, by avoidance, or as they were recorded; mixed in one run.
+//! How people walk: by social forces, by avoidance, as they were recorded, or as a driver outside says; mixed in one run.
 
 use std::collections::BTreeMap;
 
@@ -7,11 +7,12 @@ use socrates_crowd::model::{Room, View};
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_crowd::tracks::Track;
 use socrates_crowd::{Goal, Person, Segment};
-use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo, DRIVEN_LEAF};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{Fault, FaultCode, HumanId, Point, Vector};
 
-use crate::human::{Human, LEAVES};
+use crate::driven::Driven;
+use crate::human::{Human, LEAVES, STEP_LEAVES};
 use crate::near::Other;
 use crate::run::Engine;
 use crate::start;
@@ -30,6 +31,9 @@ pub enum HumanModel {
     /// As recorded, from the first sample to the last: seen and felt by all, feels nobody, has no tree. Times of
     /// the track are times of the run. Only for people who are not in the proposal.
     Recorded(Track),
+    /// As a driver outside says: see [`crate::Drivers::people`]. Their tree moves nothing; it only tells when their steps would be
+    /// over, which others may wait for.
+    Driven,
 }
 
 /// The model of a human at work.
@@ -42,7 +46,12 @@ pub(crate) enum Walks {
         track: Box<Track>,
         present: bool,
     },
+    Driven(Box<Driven>),
 }
+
+/// Number of the leaf of somebody who is driven: behind all others, so that a header names those as ever.
+#[expect(clippy::cast_possible_truncation, reason = "a few leaves")]
+pub(crate) const DRIVEN_LEAF_NUMBER: u16 = (LEAVES.len() + 2 + STEP_LEAVES.len()) as u16;
 
 impl Engine {
     /// The same run with other models for some of its people, and with recorded people besides.
@@ -66,6 +75,7 @@ impl Engine {
                     Ok(orca) => human.walks = Walks::Orca(Box::new(orca)),
                     Err(why) => faults.push(fault(FaultCode::BRange, id, why.to_string())),
                 },
+                (HumanModel::Driven, Some(human)) => human.walks = Walks::Driven(Box::default()),
                 (HumanModel::Recorded(track), None) => match recorded(*id, track) {
                     Ok(human) => {
                         self.header.agents.push(AgentInfo {
@@ -83,7 +93,7 @@ impl Engine {
                     let message = format!("{id} is in the proposal; a recorded person takes an id that is not");
                     faults.push(fault(FaultCode::BAgents, id, message));
                 }
-                (HumanModel::SocialForces | HumanModel::Orca(_), None) => {
+                (HumanModel::SocialForces | HumanModel::Orca(_) | HumanModel::Driven, None) => {
                     let names: Vec<String> = known.iter().map(ToString::to_string).collect();
                     let message = format!("{id} is not in the proposal; it has {}", names.join(", "));
                     faults.push(fault(FaultCode::BAgents, id, message));
@@ -96,6 +106,11 @@ impl Engine {
         if self.humans.len() > known.len() {
             self.header.leaves.truncate(LEAVES.len());
             self.header.leaves.extend([TRACK_LEAF.to_owned(), ABSENT_LEAF.to_owned()]);
+        }
+        if self.humans.iter().any(Human::is_driven) {
+            self.header.leaves.truncate(LEAVES.len());
+            let behind = [TRACK_LEAF, ABSENT_LEAF].into_iter().chain(STEP_LEAVES).chain([DRIVEN_LEAF]);
+            self.header.leaves.extend(behind.map(str::to_owned));
         }
         Ok(self)
     }

@@ -93,6 +93,9 @@ pub(crate) struct Scene<'a> {
 
 /// The wish of one human for this tick; `pace` is the speed of the rendezvous controller.
 pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
+    if let Some(told) = human.told() {
+        return told;
+    }
     match human.action.clone() {
         Action::Navigate | Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_) => {
             navigate(human, scene, pace)

@@ -4,11 +4,10 @@ use socrates_maps::DistanceField;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{AgentId, Command, Gesture, NodeId, Point, Polyline, Pose, RobotModel, Vector};
 
+use crate::drive::GESTURE_S;
 use crate::other_way::OtherWay;
 use crate::view::MOVING_MPS;
 
-/// How long a gesture is held, s.
-const GESTURE_S: f64 = 2.0;
 /// Farther from its intended way than this the robot goes another way, m; nearer than this to any later part of it, m, it is back.
 const OFF_WAY_M: f64 = 3.0;
 const BACK_ON_WAY_M: f64 = 1.0;

@@ -2,6 +2,7 @@
 
 use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
+use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
     Action, AgentId, AgentState, Event, EventKind, Fault, HumanId, Recording, RecordingHeader, RobotDriver, SimTime,
@@ -9,9 +10,11 @@ use socrates_model::{
 
 use crate::advance::Desk;
 use crate::doors::{self, Doors, Passer, Raised};
+use crate::drive::Drivers;
 use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Human, LEAVES, leaf_name, leaf_number};
+use crate::models::DRIVEN_LEAF_NUMBER;
 use crate::near::Near;
 use crate::recorder::{Onlooker, Recorder};
 use crate::rendezvous::{self, Timing};
@@ -126,7 +129,8 @@ impl Engine {
     }
 
     /// Runs to the end; `onlooker` gets everything as it comes, and nothing of it is kept.
-    pub fn play(mut self, mut driver: Option<&mut dyn RobotDriver>, onlooker: &mut dyn Onlooker) {
+    pub fn play<'d>(mut self, drivers: impl Into<Drivers<'d>>, onlooker: &mut dyn Onlooker) {
+        let mut drivers = drivers.into();
         onlooker.announce(&self.header);
         let mut recorder = Recorder::new();
         let mut tick = 0_u64;
@@ -146,13 +150,10 @@ impl Engine {
                 }
             }
             self.think(now, tick == 0, &mut recorder);
-            if let Some(driver) = driver.as_deref_mut() {
-                self.drive(driver, now, &mut recorder);
-                if driver.is_gone() {
-                    recorder.tell(EventKind::End { reason: "driver".to_owned() });
-                    recorder.frame(&self.states(tick), onlooker);
-                    return;
-                }
+            if self.ask_drivers(&mut drivers, now, &mut recorder) {
+                recorder.tell(EventKind::End { reason: "driver".to_owned() });
+                recorder.frame(&self.states(tick), onlooker);
+                return;
             }
             let states = self.states(tick);
             let met = self.watch(&mut recorder);
@@ -247,6 +248,13 @@ impl Engine {
             human.steps_ended = ended;
             if let Some(distance_m) = sight {
                 recorder.sight(human.id, distance_m);
+            }
+            if human.is_driven() {
+                // What their tree would have them do is for their driver to do, or not.
+                if first {
+                    recorder.tell(EventKind::Leaf { human: human.id, leaf: DRIVEN_LEAF.to_owned() });
+                }
+                continue;
             }
             // A tick in which nothing acts is a pause, not a new motion.
             let act = act.unwrap_or(Action::StandStill);
@@ -344,7 +352,7 @@ impl Engine {
         let mut walkers = Vec::with_capacity(self.humans.len());
         for human in &self.humans {
             let (there, speed_mps) = (human.at_goal(), human.velocity.norm());
-            let walks = human.gets_on();
+            let walks = human.gets_on() && !human.waits();
             done &= human.stays() || there || !walks && speed_mps < 0.05;
             walkers.push((human.id, human.s, walks && human.started && !there && speed_mps < 0.3));
         }
@@ -364,6 +372,9 @@ impl Engine {
 /// Number of the leaf that a frame tells: of the action, or what somebody recorded does.
 fn leaf(human: &Human) -> u16 {
     let after = u16::try_from(LEAVES.len()).unwrap_or(u16::MAX);
+    if human.is_driven() {
+        return DRIVEN_LEAF_NUMBER;
+    }
     match (human.is_recorded(), human.present()) {
         (false, _) => leaf_number(&human.action),
         (true, true) => after,

@@ -88,13 +88,6 @@ impl<'a> View<'a> {
         self.shown.get(place)
     }
 
-    /// Whether a way lies in the field of view.
-    fn faces(&self, way: &Vector) -> bool {
-        // Ahead is always in it; only what is abeam or behind needs the angle.
-        let heading = self.human.heading();
-        heading.dot(way) > 0.0 || angle_between(&heading, way) <= HALF_FIELD_OF_VIEW_RAD
-    }
-
     fn in_sight(&self, robot: &RobotSeen) -> bool {
         if let Some(known) = self.sight.get() {
             return known;
@@ -117,9 +110,15 @@ impl<'a> View<'a> {
         }
         let way = robot.at - self.human.at;
         let distance = way.norm();
-        let seen = distance <= within_m && self.faces(&way) && self.in_sight(&robot);
+        let seen = distance <= within_m && in_field_of_view(&self.human.heading(), &way) && self.in_sight(&robot);
         seen.then_some(distance)
     }
+}
+
+/// Whether a way lies in the field of view of somebody who faces there.
+pub(crate) fn in_field_of_view(heading: &Vector, way: &Vector) -> bool {
+    // Ahead is always in it; only what is abeam or behind needs the angle.
+    heading.dot(way) > 0.0 || angle_between(heading, way) <= HALF_FIELD_OF_VIEW_RAD
 }
 
 /// Angle between two directions, rad, 0 to pi; 0 where one of them is zero.

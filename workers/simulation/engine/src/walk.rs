@@ -73,6 +73,9 @@ impl Walker {
 
     /// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
     pub(crate) fn steer(&mut self, human: &mut Human, want: &Want, pairs: &Pairs, scene: &Steps<'_>) {
+        if human.is_driven() {
+            return human.obey();
+        }
         let wished = match want.target {
             Some(target) if walks(want) => {
                 human.anchor = None;
@@ -185,8 +188,12 @@ fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {
 pub(crate) fn settle(human: &mut Human, want: &Want, at: Point, velocity: Vector) {
     human.at = at;
     human.velocity = velocity;
-    (human.yaw, human.omega) =
-        gait::turned(human.yaw, &at, &velocity, want.target.is_some(), want.face.as_ref(), STEP_SECS);
+    if human.is_driven() {
+        human.yaw = socrates_model::geometry::wrap_angle(human.yaw + human.omega * STEP_SECS);
+    } else {
+        (human.yaw, human.omega) =
+            gait::turned(human.yaw, &at, &velocity, want.target.is_some(), want.face.as_ref(), STEP_SECS);
+    }
     if human.trail.end().is_none_or(|end| (at - end).norm() > 0.1) {
         human.trail.push(at);
     }

@@ -105,6 +105,7 @@ fn drive_through(
             vy: 0.0,
             omega: 0.0,
             people: &seen,
+            robot: None,
             everybody: &Vec::new,
             doors,
             lidar: &lidar,

@@ -1,11 +1,11 @@
 //! A run that was driven from outside, played again from its commands.
 
-use socrates_model::driver::Commands;
+use socrates_model::driver::{Commands, Told};
 use socrates_model::{Command, Fault, Observation, RobotDriver};
 
 use super::{Driver, Ended, Outside, Wanted, fault};
 
-/// Drives with the commands that a driver gave before.
+/// Drives with the commands that drivers gave before.
 #[derive(Debug, Clone)]
 pub struct Again {
     commands: Commands,
@@ -21,18 +21,21 @@ impl Again {
 
 impl Outside for Again {
     fn begin(&mut self, wanted: &Wanted<'_>) -> Result<Box<dyn Driver>, Fault> {
-        let rate_hz = self.commands.rate_hz;
+        let agent = wanted.agent();
+        let told = self.commands.of(agent);
+        let Told { rate_hz, commands } =
+            told.ok_or_else(|| wanted.fault(format!("the commands that were kept hold none for {agent}")))?;
         if !(1.0..=100.0).contains(&rate_hz) {
-            return Err(fault(wanted.driver, format!("`rate_hz` of its commands is {rate_hz}; allowed: 1 to 100")));
+            return Err(wanted.fault(format!("`rate_hz` of its commands is {rate_hz}; allowed: 1 to 100")));
         }
-        let commands = self.commands.commands.clone().into_iter();
-        Ok(Box::new(Player { name: wanted.driver.to_owned(), rate_hz, commands, given: 0, fault: None }))
+        let commands = commands.into_iter();
+        Ok(Box::new(Player { place: wanted.place(), rate_hz, commands, given: 0, fault: None }))
     }
 }
 
 /// The commands, one after the other.
 struct Player {
-    name: String,
+    place: String,
     rate_hz: f64,
     commands: std::vec::IntoIter<Command>,
     given: usize,
@@ -48,7 +51,7 @@ impl RobotDriver for Player {
         let Some(command) = self.commands.next() else {
             let at = seen.time.secs();
             let why = format!("at {at:.2} s: its commands end after {}, and the run goes on", self.given);
-            self.fault = Some(fault(&self.name, why));
+            self.fault = Some(fault(&self.place, why));
             return Command::default();
         };
         self.given += 1;

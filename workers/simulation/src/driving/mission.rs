@@ -6,7 +6,7 @@ use socrates_model::robot::RobotFile;
 use socrates_model::{Cell, Digest, Grid, PlannerName, Point};
 use socrates_planners::Mission;
 
-use super::{Mode, Wanted, fault};
+use super::{Mode, Wanted};
 
 /// A point as it is told.
 fn at(point: &Point) -> [f64; 2] {
@@ -43,10 +43,11 @@ pub(super) fn message(
         version: VERSION,
         session,
         run: wanted.run.clone(),
-        planner: planner.map_err(|bad| fault(wanted.driver, bad.to_string()))?,
+        planner: planner.map_err(|bad| wanted.fault(bad.to_string()))?,
         seed: wanted.seed,
         mode: mode.word().to_owned(),
         robot: RobotFile::from(robot),
+        person: wanted.person.cloned(),
         goal: waypoints.last().map(at).unwrap_or_default(),
         waypoints: points(waypoints),
         plan: points(plan),

@@ -56,7 +56,7 @@ impl OverBus {
         plan: &[Point],
         session: u64,
     ) -> Result<MissionAnswer, Fault> {
-        let failed = |why: String| fault(wanted.driver, why);
+        let failed = |why: String| wanted.fault(why);
         let cells = cells(&wanted.mission.grid);
         let mission = message(wanted, session, self.drive.mode, plan, &cells)?;
         let claims = line.claims().await.map_err(failed)?;
@@ -78,6 +78,7 @@ impl Outside for OverBus {
         let answer = self.handle.block_on(self.hello(&line, wanted, &plan, session))?;
         Ok(Box::new(Remote {
             line,
+            place: wanted.place(),
             handle: self.handle.clone(),
             drive: self.drive,
             cancel: self.cancel.clone(),
@@ -102,6 +103,8 @@ type Asked = JoinHandle<Result<Vec<u8>, LinkError>>;
 /// One run of a driver over the bus.
 struct Remote {
     line: Line,
+    /// Where its faults are.
+    place: String,
     handle: Handle,
     drive: Drive,
     cancel: Cancel,
@@ -109,7 +112,7 @@ struct Remote {
     answer: MissionAnswer,
     goal: Option<Point>,
     plan: Polyline,
-    /// How far along the plan the robot is, m.
+    /// How far along the plan the one who is driven is, m.
     s: f64,
     call: u32,
     last: Command,
@@ -141,7 +144,8 @@ impl Remote {
             }
         };
         let lidar = if self.answer.lidar { (seen.lidar)() } else { Vec::new() };
-        step_bytes(&head, seen, &hidden, &lidar)
+        let robot = seen.robot.filter(|robot| robot.in_sight || self.answer.people == Shown::All);
+        step_bytes(&head, &Observation { robot, ..*seen }, &hidden, &lidar)
     }
 
     /// Takes the answer to a step.
@@ -155,7 +159,7 @@ impl Remote {
     }
 
     fn end(&mut self, now_s: f64, why: &str) {
-        self.fault = Some(fault(self.line.driver(), format!("at {now_s:.2} s: {why}")));
+        self.fault = Some(fault(&self.place, format!("at {now_s:.2} s: {why}")));
     }
 
     /// The simulation stands until the answer is there, at most so long.

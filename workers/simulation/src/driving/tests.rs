@@ -1,7 +1,7 @@
 //! Runs with drivers over a bus in memory: what each way of failing comes to, and the same run again.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -18,22 +18,26 @@ use crate::runs::one_frontal;
 use crate::simulate_into;
 
 /// What a driver of a test answers to a step; none keeps silent.
-type Answer = fn(&Step, usize) -> Option<Vec<u8>>;
+pub(super) type Answer = fn(&Step, usize) -> Option<Vec<u8>>;
 
 /// A driver on the bus, and what it heard.
-struct Guest {
+pub(super) struct Guest {
     _claim: AliveToken,
+    /// Missions and ends, as they were told.
+    pub(super) told: Arc<Mutex<Vec<Value>>>,
     missions: Arc<AtomicUsize>,
     map_cells: Arc<AtomicUsize>,
     ended: Arc<AtomicUsize>,
 }
 
 /// Serves a driver of this name until the runtime ends.
-async fn guest(bus: &Arc<MemoryBus>, name: &str, mission: &'static str, answer: Answer) -> Guest {
+pub(super) async fn guest(bus: &Arc<MemoryBus>, name: &str, mission: &'static str, answer: Answer) -> Guest {
     let mut missions = bus.serve(&keys::drive_mission(name)).await.unwrap();
     let mut steps = bus.serve(&keys::drive_step(name)).await.unwrap();
     let heard: [Arc<AtomicUsize>; 3] = std::array::from_fn(|_| Arc::default());
     let [told, cells, ended] = heard.clone();
+    let all: Arc<Mutex<Vec<Value>>> = Arc::default();
+    let kept = Arc::clone(&all);
     tokio::spawn(async move {
         while let Some(ask) = missions.next().await {
             if ask.body().starts_with(b"SOCM") {
@@ -44,6 +48,7 @@ async fn guest(bus: &Arc<MemoryBus>, name: &str, mission: &'static str, answer: 
             let message: Value = serde_json::from_slice(ask.body()).unwrap();
             let end = message["socrates"] == "end";
             if end { &ended } else { &told }.fetch_add(1, Ordering::Relaxed);
+            kept.lock().unwrap().push(message);
             ask.reply(mission.as_bytes().to_vec()).await.unwrap();
         }
     });
@@ -61,10 +66,10 @@ async fn guest(bus: &Arc<MemoryBus>, name: &str, mission: &'static str, answer: 
     });
     let claim = bus.declare_alive(&keys::drive_claim(name, "1")).await.unwrap();
     let [missions, map_cells, ended] = heard;
-    Guest { _claim: claim, missions, map_cells, ended }
+    Guest { _claim: claim, told: all, missions, map_cells, ended }
 }
 
-fn runtime() -> Runtime {
+pub(super) fn runtime() -> Runtime {
     Builder::new_multi_thread().worker_threads(2).enable_all().build().unwrap()
 }
 
@@ -89,14 +94,14 @@ const MISSION: &str = r#"{"version": 1, "rate_hz": 10}"#;
 
 /// Toward the point ahead, slowly.
 #[expect(clippy::unnecessary_wraps, reason = "others keep silent")]
-fn steady(step: &Step, _nth: usize) -> Option<Vec<u8>> {
+pub(super) fn steady(step: &Step, _nth: usize) -> Option<Vec<u8>> {
     let way = step.head.ahead - step.pose.point();
     let turn = socrates_model::geometry::wrap_angle(way.y.atan2(way.x) - step.pose.yaw);
     let v = 0.5 * turn.cos().max(0.0);
     Some(command_bytes(step.head.session, step.head.call, &Command { v, omega: 1.5 * turn, ..Command::default() }))
 }
 
-fn patient(seconds: u64) -> Drive {
+pub(super) fn patient(seconds: u64) -> Drive {
     Drive { patience: Duration::from_secs(seconds), ..Drive::default() }
 }
 
@@ -108,7 +113,7 @@ fn a_driver_that_follows_the_plan_arrives_and_its_run_is_played_again_without_it
     let (commands, hash) = played(&bus, runtime.handle(), Drive::default()).unwrap();
     let (_, once_more) = played(&bus, runtime.handle(), Drive::default()).unwrap();
     assert_eq!(hash, once_more);
-    assert!((commands.rate_hz - 20.0).abs() < 1e-9);
+    assert_eq!((commands.rate_hz, commands.people.len()), (Some(20.0), 0));
     assert_eq!(heard.missions.load(Ordering::Relaxed), 2);
     assert_eq!(heard.ended.load(Ordering::Relaxed), 2);
     let grid = one_frontal().location.grid;
