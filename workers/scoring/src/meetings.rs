@@ -139,3 +139,20 @@ fn the_story_tells_which_meeting_it_is() {
     assert!(report.story.iter().any(|line| line.contains("meet for the second time at n")), "{:?}", report.story);
     assert!((report.encounter_gaps_s["human_1 second meeting"] - 0.25).abs() < 1e-9);
 }
+
+#[test]
+fn who_is_to_stop_at_a_distance_is_not_asked_to_come_nearer() {
+    let mut case = case();
+    case.plan = proposal(1, vec![must("c1", Predicate::Humans { count: 1 })]);
+    case.ways = paths(&["a", "m", "n", "b"], &[(&["nm", "m"], "m")]);
+    // The robot goes by 3.7 m from where they stand.
+    let stands = Walk::human_through(1, &[(0.0, 0.0, 6.0), (5.0, 0.0, 2.9), (34.0, 0.0, 2.9)]);
+    let run = recording(&[Walk::robot(-8., -0.8, 0.8, 0.), stands], 34.0, 0.01);
+    assert_eq!(standing(&case.judge(&run), "auto-meet-human_1").0, Standing::NotTriggered);
+    let rule = |distance_m: f64| serde_json::json!({ "when": [{ "robot_visible": distance_m }], "act": "stand_still" });
+    let mut told = |distance_m: f64| {
+        case.plan.humans[0].rules = vec![serde_json::from_value(rule(distance_m)).unwrap()];
+        standing(&case.judge(&run), "auto-meet-human_1").0
+    };
+    assert_eq!((told(2.0), told(4.0)), (Standing::NotTriggered, Standing::Holds));
+}
