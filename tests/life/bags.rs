@@ -68,8 +68,7 @@ fn wrong_bags_are_refused_with_file_value_and_hint() {
     std::fs::write(folder.path().join("a.mcap.zstd"), b"\x28\xb5\x2f\xfd and more").unwrap();
     for (what, words) in [
         ("gone", ["gone/metadata.yaml", "`run_0.mcap`, which is not there", "reindex gone"]),
-        ("cut", ["cut/run_0.mcap", "end of file", "mcap recover"]),
-        ("empty", ["empty/run_0.mcap", "end of file", "mcap recover"]),
+        ("empty", ["empty/run_0.mcap", "ended in the middle", "mcap recover"]),
         ("text", ["text/run_0.mcap", "no MCAP file", "ros2 bag record -s mcap"]),
         ("lite", ["lite/metadata.yaml", "`sqlite3`", "ros2 bag convert"]),
         ("out", ["out/metadata.yaml", "`../../etc/passwd`", "reindex"]),
@@ -85,6 +84,8 @@ fn wrong_bags_are_refused_with_file_value_and_hint() {
             assert!(refused.err.to_lowercase().contains(&word.to_lowercase()), "{what}: `{word}` in\n{}", refused.err);
         }
     }
+    let cut = socrates(folder.path(), "cut", &["score", "cut"]);
+    assert!(cut.code == 0 && cut.out.contains("`cut/run_0.mcap` is cut off or damaged"), "{}\n{}", cut.err, cut.out);
     // One message that claims a text of four gigabytes is left out, and told.
     std::fs::write(folder.path().join("long.mcap"), long).unwrap();
     let told = socrates(folder.path(), "long", &["score", "long.mcap"]);

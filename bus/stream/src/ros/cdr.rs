@@ -88,7 +88,7 @@ impl<'a> Cursor<'a> {
 
     fn take(&mut self, bytes: usize) -> Result<&'a [u8], CdrFault> {
         let end = self.at.saturating_add(bytes);
-        let taken = self.body.get(self.at..end).ok_or(CdrFault::Ends { needed: bytes, left: self.left() })?;
+        let taken = self.body.get(self.at..end).ok_or_else(|| CdrFault::Ends { needed: bytes, left: self.left() })?;
         self.at = end;
         Ok(taken)
     }

@@ -145,11 +145,12 @@ fn target<'a>(tree: &'a Tree, robot: &Robot<'a>, people: &[&'a Topic], told: &mu
     let ancestors = tree.ancestors(own);
     let last = |frame: &str| frame.rsplit('/').next().unwrap_or_default().to_owned();
     let ground = GROUNDS.iter().find_map(|ground| ancestors.iter().find(|frame| last(frame) == *ground).copied());
-    let found = ground.or(match robot {
+    // Of a robot that is a frame the outermost one that it stands in.
+    let outermost = match robot {
         Robot::Frame(_) => ancestors.last().copied(),
         Robot::Topic(_) => None,
-    });
-    let found = found.unwrap_or(own);
+    };
+    let found = ground.or(outermost).unwrap_or(own);
     if ground.is_none() {
         told.push(format!(
             "no transform leads from `{own}` to `map`: places are in `{found}`, where the robot's own drift moves people and goals"
@@ -251,7 +252,7 @@ impl<'a> Maker<'a> {
         }
         if placing.stampless > 0 {
             told.push(format!(
-                "{} of {all} places of `{name}` have no time stamp: the recorder's time is taken",
+                "{} of {all} places of `{name}` have no time stamp: the recorder's time is taken, by the clock of the others",
                 placing.stampless
             ));
         }

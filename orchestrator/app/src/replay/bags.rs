@@ -31,7 +31,11 @@ impl Other {
     pub(super) fn refused(self, name: &str) -> Complaint {
         let (what, hint) = match self {
             Self::Sqlite => ("a bag of ROS 2 in the storage `sqlite3`; `mcap` is read", CONVERT.to_owned()),
-            Self::RosOne => ("a bag of ROS 1", CONVERT.to_owned()),
+            Self::RosOne => {
+                let from = files::shell(Path::new(name));
+                let convert = format!("`rosbags-convert --src {from} --dst BAG_mcap --dst-storage mcap`");
+                ("a bag of ROS 1", format!("{convert} makes it one of ROS 2 that is read (`pip install rosbags`)"))
+            }
             Self::Zstd => (
                 "compressed as a whole",
                 format!("`zstd -d {}` unpacks it; name the .mcap file that comes of it", files::shell(Path::new(name))),

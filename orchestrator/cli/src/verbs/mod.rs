@@ -104,7 +104,7 @@ pub(crate) enum Verb {
     Labels(library::Labels),
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
     Simulate(simulate::Simulate),
-    /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw,gesture]`, or MCAP).
+    /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw,gesture]`, MCAP, or a bag of ROS 2).
     Score(score::Score),
     /// Keep scenarios ready, whose runs drivers outside ask for one after the other: for reinforcement learning.
     Serve(serve::Serve),
