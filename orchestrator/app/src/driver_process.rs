@@ -10,8 +10,8 @@ use tokio::process::{Child, Command};
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
+use crate::child::leave;
 use crate::exit::Complaint;
-use crate::supervise::leave;
 
 /// Starts in a row without a claim after which it is not started again.
 const IDLE: u32 = 2;

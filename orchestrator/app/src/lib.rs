@@ -25,6 +25,7 @@ mod calls;
 mod cards;
 #[cfg(test)]
 mod case_studies;
+mod child;
 pub mod cite;
 pub mod cluster;
 pub mod compare;

@@ -13,18 +13,17 @@ use socrates_link::{Bus, keys};
 use socrates_model::job::Stage;
 use tempfile::TempDir;
 use tokio::io::AsyncReadExt as _;
-use tokio::process::{Child, ChildStdin, Command};
+use tokio::process::{Child, Command};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
+use crate::child::leave;
 use crate::config::Config;
 use crate::driver_process::DriverCommand;
 use crate::exit::{Code, Complaint};
 use crate::router::{ENDPOINT_FILE, Router, SOCKET, read_endpoint};
 
-/// How long a child may take to leave before it is ended.
-const LEAVE_LIMIT: Duration = Duration::from_secs(3);
 /// How long the orchestrator may take to appear.
 const START_LIMIT: Duration = Duration::from_secs(20);
 /// Deaths of a child in a minute after which it is not started again at once.
@@ -237,16 +236,6 @@ async fn last_words(child: &mut Child) -> Option<Complaint> {
 fn pause(deaths: usize) -> Duration {
     let again = u32::try_from(deaths).unwrap_or(u32::MAX).saturating_sub(SUDDEN);
     if again == 0 { Duration::ZERO } else { PAUSE.saturating_mul(1 << again.min(10)).min(LONGEST_PAUSE) }
-}
-
-/// Ends a child: closing its standard input asks it to leave.
-pub(crate) async fn leave(mut child: Child, pipe: Option<ChildStdin>, name: &str) {
-    drop(pipe);
-    if tokio::time::timeout(LEAVE_LIMIT, child.wait()).await.is_err()
-        && let Err(why) = child.kill().await
-    {
-        tracing::warn!(role = name, %why, "a child could not be ended");
-    }
 }
 
 /// Keeps one child alive until told to stop.
