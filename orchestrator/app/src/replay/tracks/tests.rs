@@ -212,7 +212,7 @@ fn radii_and_groups_of_hunavsim_count_and_those_of_the_user_count_more() {
     assert_eq!(radii, ["robot 0.30", "human_1 0.35", "human_2 0.40"]);
     assert!(tells(&scored, "assumed: nominal speed of the robot 0.8 m/s (--speed)"), "{:?}", scored.told);
     assert!(!tells(&scored, "radius of people"), "{:?}", scored.told);
-    assert!(value(&scored, "o_space_seconds").is_some(), "ann and bob are a group");
+    assert_eq!(value(&scored, "group_splits"), Some(0.0), "ann and bob are a group");
     let wide = score("hunav.mcap", bytes, &Known { radius_m: Some(0.5), ..Known::default() }).unwrap();
     assert!((wide.recording.header.agents[0].radius_m - 0.5).abs() < 1e-9);
 }
