@@ -28,6 +28,7 @@ fn blank(task: &str) -> Request {
         location_description: None,
         form: Default::default(),
         robot: Default::default(),
+        people: Default::default(),
         run: Default::default(),
         expect: Default::default(),
         waive: Vec::new(),
