@@ -129,7 +129,7 @@ fn planner_row(outcome: &Outcome) -> PlannerRow {
 /// Color and name of a cause on the page.
 const fn in_words(cause: Cause) -> (&'static str, &'static str) {
     match cause {
-        Cause::MovedPeople => ("robot", "prevented: people moved"),
+        Cause::HeldPeople => ("robot", "prevented: people held up"),
         Cause::Elsewhere => ("robot", "prevented: robot elsewhere"),
         Cause::Robot => ("robot", "prevented by the robot"),
         Cause::Scenario => ("scenario", "nor with the reference"),

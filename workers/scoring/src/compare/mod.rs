@@ -138,7 +138,8 @@ pub fn enough(planners: &[PlannerName]) -> Result<(), CompareFault> {
 /// # Errors
 /// [`CompareFault`]: fewer than two planners, a planner without runs, none in common, or figures of other thresholds or formulas.
 pub fn compare(entries: &[Entry<'_>], planners: &[PlannerName]) -> Result<Comparison, CompareFault> {
-    let known: BTreeSet<&PlannerName> = entries.iter().map(|entry| entry.planner).collect();
+    let known: BTreeSet<&PlannerName> =
+        entries.iter().map(|entry| entry.planner).filter(|planner| !planner.is_no_robot()).collect();
     if let Some(planner) = planners.iter().find(|planner| !known.contains(planner)) {
         return Err(CompareFault::Unknown { planner: planner.clone(), known: listed(known) });
     }

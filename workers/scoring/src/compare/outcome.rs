@@ -6,17 +6,18 @@ use socrates_model::{PlannerName, Report, Verdict};
 
 use super::Entry;
 
-/// People who are on average this far from where they are without the robot were moved by it, m: as much as a person's width.
-const MOVED_M: f64 = 0.5;
+/// People who are on average over time so much farther from where they are without a robot than they are with the reference robot, m,
+/// were held up or moved by this one: as much as a person's width. With the reference robot too they wait and step aside.
+const HELD_M: f64 = 0.5;
 
 /// By whose doing a run was not realised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cause {
-    /// Realised with the reference robot and the same seed; people were moved off the ways that they take without a robot.
-    MovedPeople,
-    /// Realised with the reference robot; people went as they go without a robot, and it was elsewhere or there at another time.
+    /// Realised with the reference robot and the same seed; people were held up or moved more than by that one.
+    HeldPeople,
+    /// Realised with the reference robot; people went as they go with that one, and this one was elsewhere or there at another time.
     Elsewhere,
-    /// Realised with the reference robot; without a run without a robot it is not known how.
+    /// Realised with the reference robot; without figures against a run without a robot it is not known how.
     Robot,
     /// Not realised with the reference robot either, with the same seed: the scenario, not the planner.
     Scenario,
@@ -26,13 +27,13 @@ pub enum Cause {
 
 impl Cause {
     /// Every cause.
-    pub const ALL: [Self; 5] = [Self::MovedPeople, Self::Elsewhere, Self::Robot, Self::Scenario, Self::Unknown];
+    pub const ALL: [Self; 5] = [Self::HeldPeople, Self::Elsewhere, Self::Robot, Self::Scenario, Self::Unknown];
 
     /// As tables have it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::MovedPeople => "robot_moved_people",
+            Self::HeldPeople => "robot_held_people",
             Self::Elsewhere => "robot_elsewhere",
             Self::Robot => "robot",
             Self::Scenario => "scenario",
@@ -44,14 +45,14 @@ impl Cause {
     #[must_use]
     pub const fn told(self) -> &'static str {
         match self {
-            Self::MovedPeople => {
-                "realised with the reference robot and the same seed; this one moved people off the ways that they take without a robot (0.5 m or more on average)"
+            Self::HeldPeople => {
+                "realised with the reference robot and the same seed; this one held people up or moved them: on average 0.5 m or more farther from where they are without a robot than with the reference robot"
             }
             Self::Elsewhere => {
-                "realised with the reference robot and the same seed; people went as they go without a robot, and this one was elsewhere or there at another time"
+                "realised with the reference robot and the same seed; people went as they go with that one, and this one was elsewhere or there at another time"
             }
             Self::Robot => {
-                "realised with the reference robot and the same seed; there is no run without a robot to tell how"
+                "realised with the reference robot and the same seed; how it came is not known, for lack of figures against a run without a robot (the first run of a scenario has none)"
             }
             Self::Scenario => {
                 "not realised with the reference robot and the same seed either: the scenario, not the planner"
@@ -102,15 +103,16 @@ pub(super) fn cause(entry: &Entry<'_>, all: &[Entry<'_>]) -> Option<Cause> {
     let report = entry.result.ok().filter(|report| !came_about(report.verdict))?;
     let reference = all.iter().find(|other| other.planner.is_reference() && other.key() == entry.key());
     Some(match reference.and_then(|reference| reference.result.ok()) {
-        Some(reference) if came_about(reference.verdict) => by_robot(report),
+        Some(reference) if came_about(reference.verdict) => by_robot(report, reference),
         Some(_) => Cause::Scenario,
         None => Cause::Unknown,
     })
 }
 
-fn by_robot(report: &Report) -> Cause {
-    match report.metric("people_deviation").and_then(|metric| metric.value) {
-        Some(meters) if meters >= MOVED_M => Cause::MovedPeople,
+fn by_robot(report: &Report, reference: &Report) -> Cause {
+    let apart = |report: &Report| report.metric("people_deviation").and_then(|metric| metric.value);
+    match apart(report).zip(apart(reference)) {
+        Some((with_this, with_that)) if with_this - with_that >= HELD_M => Cause::HeldPeople,
         Some(_) => Cause::Elsewhere,
         None => Cause::Robot,
     }
@@ -152,18 +154,23 @@ mod tests {
             report.metrics.iter_mut().filter(|it| it.id == "people_deviation").for_each(|it| it.value = moved_m);
             one
         };
-        let caused = |reference: Option<Verdict>, moved_m: Option<f64>| {
+        let caused = |reference: Option<(Verdict, Option<f64>)>, moved_m: Option<f64>| {
             let mut all = vec![with("orca", Verdict::NotTriggered, moved_m)];
-            all.extend(reference.map(|verdict| with("reference", verdict, None)));
+            all.extend(reference.map(|(verdict, moved_m)| with("reference", verdict, moved_m)));
             let entries = entries(&all);
             cause(&entries[0], &entries)
         };
-        let realised = Some(Verdict::RealisedLate);
-        assert_eq!(caused(realised, Some(0.8)), Some(Cause::MovedPeople));
-        assert_eq!(caused(realised, Some(0.1)), Some(Cause::Elsewhere));
+        let realised = Some((Verdict::RealisedLate, Some(1.0)));
+        assert_eq!(caused(realised, Some(1.8)), Some(Cause::HeldPeople));
+        assert_eq!(caused(realised, Some(1.1)), Some(Cause::Elsewhere));
         assert_eq!(caused(realised, None), Some(Cause::Robot));
-        assert_eq!(caused(Some(Verdict::Contradicted), Some(0.8)), Some(Cause::Scenario));
-        assert_eq!(caused(None, Some(0.8)), Some(Cause::Unknown));
+        assert_eq!(
+            caused(Some((Verdict::Realised, None)), Some(1.8)),
+            Some(Cause::Robot),
+            "nothing to hold it against"
+        );
+        assert_eq!(caused(Some((Verdict::Contradicted, Some(1.0))), Some(1.8)), Some(Cause::Scenario));
+        assert_eq!(caused(None, Some(1.8)), Some(Cause::Unknown));
         let all = [with("orca", Verdict::Realised, None)];
         assert_eq!(cause(&entries(&all)[0], &entries(&all)), None);
     }
