@@ -83,7 +83,7 @@ fn what_cannot_be_compared_is_refused_with_what_to_do() {
     let mixed = refused("mixed", &["one/scenarios", "dock.toml"]);
     assert!(mixed.contains("`one/scenarios` holds bundles"), "{mixed}");
     let who = refused("who", &["one/scenarios", "--planner", "orca,rpp"]);
-    assert!(who.contains("`rpp` has no run here; those that have are none, orca and reference"), "{who}");
+    assert!(who.contains("`rpp` has no run here; those that have are orca, reference and straight_line"), "{who}");
 }
 
 #[test]

@@ -586,14 +586,13 @@ fn what_comes_suddenly_is_brisk_and_who_stays_inside_is_startled_at_first_sight(
 
 #[test]
 fn a_task_with_people_is_a_pattern_about_it() {
-    let location = map("office");
     for (task, patterns) in [
         ("Guide the visitors to the exit", ["leading", "evacuation_guide"]),
         ("Follow the nurse", ["robot_following", "robot_following"]),
         ("Accompanies a guest to the kitchen", ["accompanying", "accompanying"]),
     ] {
         for seed in 0..10 {
-            let ask = question(Stage::Proposal, &request(task, None), &location, seed);
+            let ask = question(Stage::Proposal, &request(task, None), &map("office"), seed);
             let found = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask));
             assert!(patterns.contains(&found.pattern.as_str()), "{task}: {}", found.pattern);
         }
