@@ -71,10 +71,6 @@ impl Card {
         // Folders are unique where ids need not be.
         let id = ScenarioId::new(name).or_else(|_| ScenarioId::new(&bundle.manifest.scenario));
         let id = id.map_err(|bad| Complaint::input(bad.to_string(), "rename the folder"))?;
-        let request = match bundle.manifest.request.as_str() {
-            "" => bundle.manifest.scenario.as_str(),
-            request => request,
-        };
         let row = BatchRow::of(&BatchEntry {
             folder: name,
             scenario: &bundle.manifest.scenario,
@@ -86,7 +82,7 @@ impl Card {
             reports,
             recording: bundle.runs.first().map(|(recording, _)| recording),
         });
-        let scenario = Scenario { request, location: &location.name, path: name };
+        let scenario = Scenario { request: bundle.manifest.request_name(), location: &location.name, path: name };
         let runs = index::Rows::of(scenario, reports, &bundle.manifest.failed);
         let likeness = Likeness::of(&bundle.proposal, &bundle.paths, &location);
         Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs })

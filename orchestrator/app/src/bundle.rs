@@ -80,6 +80,13 @@ pub(crate) struct Manifest {
     pub(crate) files: BTreeMap<String, Digest>,
 }
 
+impl Manifest {
+    /// Name of the request, or of the scenario where that was not kept.
+    pub(crate) fn request_name(&self) -> &str {
+        if self.request.is_empty() { &self.scenario } else { &self.request }
+    }
+}
+
 /// A run without a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FailedRun {
@@ -87,6 +94,13 @@ pub(crate) struct FailedRun {
     pub(crate) run: Run,
     /// Why: the faults of its last attempt.
     pub(crate) faults: Vec<Fault>,
+}
+
+impl FailedRun {
+    /// Why, in a line.
+    pub(crate) fn told(&self) -> String {
+        self.faults.iter().map(ToString::to_string).collect::<Vec<_>>().join(" · ")
+    }
 }
 
 /// A finished bundle.

@@ -13,11 +13,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_model::PlannerName;
-use socrates_scoring::compare::{
-    CompareFault, Comparison, Entry, Row, compare as compared, enough, runs_csv, under_test,
-};
+use socrates_scoring::compare::{CompareFault, Comparison, Entry, compare as compared, enough, runs_csv, under_test};
 
 use self::found::{Found, Scenario};
+use self::page::Rows;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
@@ -71,10 +70,11 @@ pub async fn compare(talk: &Printer, config: &Config, options: &CompareOptions) 
             "run the requests first, then name all folders of bundles together",
         ));
     }
-    let planners = match options.run.planner.as_slice() {
+    let named = match options.run.planner.as_slice() {
         [] => CASE_STUDY.iter().filter_map(|name| PlannerName::new(*name).ok()).collect(),
-        named => tested(named, options.against.as_ref()),
+        named => named.to_vec(),
     };
+    let planners = tested(&named, options.against.as_ref());
     // Before anything is run.
     enough(&planners).map_err(|why| refused(&why))?;
     // The run without a robot tells whose doing it is that a scenario does not come about.
@@ -117,8 +117,9 @@ fn write(
     files::write(&out.join(TABLE), runs_csv(&entries).as_bytes())?;
     files::write(&out.join(DIFFERENCES), comparison.differences_csv().as_bytes())?;
     files::write(&out.join(LATEX), comparison.latex().as_bytes())?;
-    let left_out = page::write(talk, &out.join(PAGE), found, &comparison)?;
-    tell(talk, found, &comparison);
+    let rows = Rows::of(&comparison);
+    let left_out = page::write(talk, &out.join(PAGE), found, &comparison, &rows)?;
+    tell(talk, found, &comparison, &rows);
     if let Some(film) = &options.film {
         self::film(talk, config, options, film, found, &planners)?;
     }
@@ -128,7 +129,7 @@ fn write(
     talk.result(&json!({
         "page": out.join(PAGE).display().to_string(), "table": out.join(TABLE).display().to_string(),
         "planners": comparison.planners, "scenarios": comparison.scenarios, "common": comparison.common,
-        "basis": comparison.basis(), "outcomes": page::planner_rows(&comparison), "figures": page::metric_rows(&comparison),
+        "basis": comparison.basis(), "outcomes": rows.planners, "figures": rows.metrics,
         "left_out": found.left_out, "not_played": left_out,
     }));
     Ok(Code::Ok)
@@ -150,12 +151,12 @@ fn refused(why: &CompareFault) -> Complaint {
 }
 
 /// Prints what became of the runs and the figures that differ.
-fn tell(talk: &Printer, found: &Found, comparison: &Comparison) {
+fn tell(talk: &Printer, found: &Found, comparison: &Comparison, rows: &Rows) {
     for (name, why) in &found.left_out {
         talk.warn(&format!("left out   {name}: {why}"));
     }
     talk.line(&format!("compared   {}", comparison.basis()));
-    for row in page::planner_rows(comparison) {
+    for row in &rows.planners {
         let parts = row.parts.iter().filter(|part| part.count > 0).map(|part| format!("{} {}", part.count, part.words));
         talk.line(&format!("planner    {}: {} runs · {}", row.name, row.runs, parts.collect::<Vec<_>>().join(" · ")));
     }
@@ -166,7 +167,8 @@ fn tell(talk: &Printer, found: &Found, comparison: &Comparison) {
             .filter(|(_, difference)| difference.is_clear())
             .map(|(planner, difference)| {
                 let (low, high) = difference.interval.unwrap_or_default();
-                format!("{planner} {:+.2} [{low:+.2}, {high:+.2}]{}", difference.estimate, unit(row))
+                let unit = row.metric.unit_shown().map_or_else(String::new, |unit| format!(" {unit}"));
+                format!("{planner} {:+.2} [{low:+.2}, {high:+.2}]{unit}", difference.estimate)
             })
             .collect();
         if !clear.is_empty() {
@@ -177,14 +179,6 @@ fn tell(talk: &Printer, found: &Found, comparison: &Comparison) {
             };
             talk.line(&format!("differs    {} from {against}: {}{of}", row.metric.id, clear.join(" · ")));
         }
-    }
-}
-
-/// The unit behind a number.
-fn unit(row: &Row) -> String {
-    match row.metric.unit {
-        "0/1" | "share" | "count" => String::new(),
-        unit => format!(" {unit}"),
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use socrates_model::{Report, ScenarioEnd};
+use socrates_model::{Report, Run, ScenarioEnd};
 use socrates_scoring::metrics::{KEY_FIGURES, key_figures};
-use socrates_stream::csv::joined;
+use socrates_stream::csv::{joined, one_line};
 
 use crate::bundle::FailedRun;
 use crate::exit::Complaint;
@@ -48,9 +48,9 @@ impl Rows {
             }));
             row
         });
-        let without = failed.iter().map(|FailedRun { run, faults }| {
-            let told: Vec<String> = faults.iter().map(ToString::to_string).collect();
-            let cells = [run.planner.as_str(), &run.seed.to_string(), FAILED, &told.join(" · ")];
+        let without = failed.iter().map(|failed| {
+            let Run { planner, seed } = &failed.run;
+            let cells = [planner.as_str(), &seed.to_string(), FAILED, &failed.told()];
             let mut row = row(scenario, cells);
             row.extend(KEY_FIGURES.iter().map(|_| String::new()));
             row
@@ -107,9 +107,9 @@ fn kind(repeats: bool) -> String {
 
 /// The first cells of a row, in the order of [`COLUMNS`]; its kind is said later.
 fn row(scenario: Scenario<'_>, [planner, seed, verdict, reason]: [&str; 4]) -> Vec<String> {
-    // A reason of several lines would break tables that are read line by line.
-    let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
-    [scenario.request, scenario.location, planner, seed, verdict, &reason, "", scenario.path].map(str::to_owned).into()
+    [scenario.request, scenario.location, planner, seed, verdict, &one_line(reason), "", scenario.path]
+        .map(str::to_owned)
+        .into()
 }
 
 #[cfg(test)]

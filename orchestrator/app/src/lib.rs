@@ -60,6 +60,7 @@ pub mod new_request;
 mod next;
 #[cfg(test)]
 mod online;
+mod opaque;
 mod orchestrate;
 pub mod output;
 mod place;

@@ -1,5 +1,7 @@
 //! How a request is read, in lines.
 
+use socrates_stream::csv::one_line;
+
 use crate::output::Printer;
 use crate::prepare::Prepared;
 
@@ -22,9 +24,4 @@ pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
     for note in prepared.reading.notes.iter().chain(&prepared.notes) {
         talk.line(&format!("note       {note}"));
     }
-}
-
-/// Words of a text without its line breaks.
-fn one_line(quote: &str) -> String {
-    quote.split_whitespace().collect::<Vec<_>>().join(" ")
 }

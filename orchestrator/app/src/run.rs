@@ -272,8 +272,7 @@ fn finish(
     }
     for failed in &bundle.manifest.failed {
         let Run { planner, seed } = &failed.run;
-        let told: Vec<String> = failed.faults.iter().map(ToString::to_string).collect();
-        talk.line(&format!("robot      {planner} seed {seed}: NO RESULT · {}", told.join(" · ")));
+        talk.line(&format!("robot      {planner} seed {seed}: NO RESULT · {}", failed.told()));
     }
     // The first line is that of the first run; of several, this one says how often it happened.
     let played = || bundle.runs.iter().filter(|(_, report)| !report.planner.is_no_robot());

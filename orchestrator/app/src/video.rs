@@ -88,7 +88,7 @@ pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> R
     let bundle = bundle::read(&options.bundle)?;
     let mut runs = shown_runs(&bundle, &options.run)?;
     if options.labels == Labels::Opaque {
-        runs.sort_by_key(|run| Digest::of(format!("{} {run}", bundle.manifest.scenario).as_bytes()));
+        runs.sort_by_key(|run| crate::opaque::rank(&bundle.manifest.scenario, run));
     }
     let names: Vec<String> = runs.iter().map(Run::to_string).collect();
     let out = options.out.clone().unwrap_or_else(|| {

@@ -1,14 +1,13 @@
 //! The worker's stage: a job in, a recording and its summary out.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use socrates_engine::Onlooker;
 use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
 use socrates_model::{
-    AgentState, Event, FailureClass, Fault, FaultCode, HumanId, Location, PersonModel, PlannerName, Reading,
-    RecordingHeader, Request, Role, RunId, Where, fault,
+    AgentState, Event, FailureClass, Fault, FaultCode, Location, PlannerName, Reading, RecordingHeader, Request, Role,
+    RunId, Where, fault,
 };
 use socrates_stream::mcap::{Tape, Writer};
 use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, StreamError};
@@ -45,8 +44,7 @@ impl Simulation {
 struct Inputs {
     setup: socrates_engine::Setup,
     planner: PlannerName,
-    nav2: Option<String>,
-    people: BTreeMap<HumanId, PersonModel>,
+    request: Option<Request>,
     location: Location,
 }
 
@@ -66,9 +64,7 @@ fn inputs(job: &Job) -> Result<Inputs, Failure> {
     })?;
     let id = run.id(&spec.key.scenario);
     let setup = setup(location.clone(), proposal, paths, behaviors, request.as_ref(), id, run.seed);
-    let nav2 = request.as_ref().and_then(|request| request.robot.nav2.get(&run.planner).cloned());
-    let people = request.map(|request| request.people).unwrap_or_default();
-    Ok(Inputs { setup, planner: run.planner.clone(), nav2, people, location })
+    Ok(Inputs { setup, planner: run.planner.clone(), request, location })
 }
 
 /// Writes the run down while it goes, chunk by chunk.
@@ -182,18 +178,19 @@ impl Stage for Simulation {
     const STAGE: socrates_model::job::Stage = socrates_model::job::Stage::Simulation;
 
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
-        let Inputs { setup, planner, nav2, people, location } = inputs(job)?;
+        let Inputs { setup, planner, request, location } = inputs(job)?;
         let run = setup.run.clone();
         let drive = Drive::read(job.setting("drive"), job.setting("drive_patience_s"))?;
         let mut viewers = viewers(job, &run, location, self).await?;
-        let is_driven = planner.external().is_some() || !people.is_empty();
+        let is_driven =
+            planner.external().is_some() || request.as_ref().is_some_and(|request| !request.people.is_empty());
         if drive.mode == Mode::Free && is_driven && viewers.pace == Pace::Max {
             viewers.pace = Pace::Times(1.0);
         }
         let mut outside = OverBus::new(job.live_bus(), Handle::current(), drive, job.cancel().clone());
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
-            let driven = Driven { planner: &planner, nav2: nav2.as_deref(), people: &people };
+            let driven = request.as_ref().map_or_else(|| Driven::from(&planner), |all| Driven::of(all, &planner));
             let commands = simulate_into(setup, driven, &mut outside, &mut viewers)?;
             let Viewers { scribe, mut sinks, .. } = viewers;
             let mut done = scribe.outputs(&named)?;

@@ -134,6 +134,12 @@ impl AgentTable {
     }
 }
 
+/// A text as one line: with a line break in a cell a table cannot be read line by line.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// A line of a table as RFC 4180 has it, without its end: a cell is in quotes only where it needs them. A cell that is
 /// empty and alone is in quotes, so that it is no empty line.
 #[must_use]

@@ -1,5 +1,5 @@
 (() => {
-  const { View, Clock, keys, make, word, words, plain, secs, seconds } = player;
+  const { View, controls, make, word, words, plain, secs, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
   const INK = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#8a6d00", "#5b636e", "#a8641c"];
@@ -78,13 +78,10 @@
     const told = word("p", "", figure, "told"), robot = word("p", "", figure, "quiet small"), story = word("ol", "", figure, "story");
     panels.push({ figure, caption, svg, told, robot, story, items: [] });
   }
-  const clock = new Clock((now) => {
-    at("time").value = now; at("clock").textContent = secs(now); at("time").setAttribute("aria-valuetext", secs(now));
+  const { clock, go, until } = controls((now) => {
     for (const view of views) if (view) view.show(now);
     for (const panel of panels) for (const [t, item] of panel.items) item.className = t <= now + 0.05 ? "" : "later";
-  }, (on) => { at("play").textContent = on ? "❚❚" : "▶"; at("play").setAttribute("aria-label", on ? "pause" : "play"); });
-  const go = (t) => { clock.play(false); clock.set(t); };
-  function pace() { const speed = Number(at("speed").value); clock.rate = speed === 0 ? Math.max(clock.end / 10, 1) : speed; }
+  });
   function lay() {
     if (!shown) return;
     const place = data.places[shown.place];
@@ -118,7 +115,7 @@
       }
       return view;
     });
-    clock.end = Math.max(...shown.runs.map((run) => run ? seconds(run) : 0)); at("time").max = clock.end; pace();
+    until(Math.max(...shown.runs.map((run) => run ? seconds(run) : 0)));
     at("zoom").hidden = box[2] >= data.places[shown.place].whole[2] - 1 && box[3] >= data.places[shown.place].whole[3] - 1;
     lay();
   }
@@ -135,13 +132,9 @@
   at("scenario").addEventListener("change", seeds); at("seed").addEventListener("change", () => { load(); clock.set(0); });
   at("hide").addEventListener("change", load);
   at("choose").addEventListener("submit", (e) => e.preventDefault());
-  at("play").addEventListener("click", () => clock.toggle());
   at("zoom").addEventListener("click", () => { focused = !focused; lay(); });
-  at("speed").addEventListener("change", pace);
-  at("time").addEventListener("input", (e) => go(Number(e.target.value)));
   at("time").style.width = "100%";
   addEventListener("resize", lay);
-  keys({ " ": () => clock.toggle(), ArrowRight: () => go(clock.now + 0.5), ArrowLeft: () => go(clock.now - 0.5), Home: () => go(0), End: () => go(clock.end) });
   seeds();
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) clock.play(true);
 })();

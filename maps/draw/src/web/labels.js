@@ -1,5 +1,5 @@
 (() => {
-  const { View, Clock, keys, word, secs, seconds } = player;
+  const { View, controls, word, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
   const COLUMNS = data.columns, QUESTIONS = data.questions;
@@ -33,12 +33,8 @@
     for (let i = order.length - 1; i > 0; i--) { const j = Math.floor(draw() * (i + 1)); [order[i], order[j]] = [order[j], order[i]]; }
   }
 
-  const clock = new Clock((now) => {
-    at("time").value = now; at("clock").textContent = secs(now);
-    at("time").setAttribute("aria-valuetext", secs(now));
-    if (view) view.show(now);
-  }, (on) => { at("play").textContent = on ? "❚❚" : "▶"; at("play").setAttribute("aria-label", on ? "pause" : "play"); });
-  const go = (t) => { clock.play(false); clock.set(t); };
+  const own = { ...Object.fromEntries(QUESTIONS[0].answers.map(([what, key]) => [key, () => answer(what)])), x: () => undo(), p: () => choose(place - 1) };
+  const { clock, until } = controls((now) => { if (view) view.show(now); }, own);
 
   // Films that are too large for the page lie beside it.
   globalThis.film = (name, parts) => { const r = data.runs.find((r) => r.name === name); if (r) Object.assign(r, parts); };
@@ -60,8 +56,7 @@
     view = new View(at("map"), data.places[run.place]);
     // The name of the run would tell the planner.
     view.load(run); at("map").setAttribute("aria-label", "the run, seen from above");
-    clock.end = seconds(run); clock.rate = Number(at("speed").value);
-    at("time").max = clock.end;
+    until(seconds(run));
     at("number").textContent = data.named ? `${run.name} · ${place + 1} of ${order.length}` : `Run ${place + 1} of ${order.length}`;
     const asked = at("asked"); asked.textContent = "";
     for (const [name, text] of run.texts) { word("dt", name, asked); word("dd", text, asked, "said"); }
@@ -142,17 +137,12 @@
   at("rater").value = rater;
   at("rater").addEventListener("input", (e) => { rater = clean(e.target.value); keep(); shuffle(); ask(); });
   at("rater").addEventListener("change", () => { at("rater").value = rater; choose(0); });
-  at("play").addEventListener("click", () => clock.toggle());
-  at("speed").addEventListener("change", (e) => { clock.rate = Number(e.target.value); });
-  at("time").addEventListener("input", (e) => go(Number(e.target.value)));
   at("back").addEventListener("click", () => choose(place - 1));
   at("next").addEventListener("click", () => choose(place + 1));
   at("open").addEventListener("click", open);
   at("export").addEventListener("click", save);
   addEventListener("resize", () => { if (!view) return; view.lay(run.focus); view.show(clock.now); });
   addEventListener("keydown", (e) => { if (e.key === "Enter" && !/^(BUTTON|INPUT|SUMMARY|SELECT|TEXTAREA)$/.test(e.target.tagName)) choose(place + 1); });
-  keys({ " ": () => clock.toggle(), ArrowRight: () => go(clock.now + 0.5), ArrowLeft: () => go(clock.now - 0.5), Home: () => go(0), End: () => go(clock.end),
-    ...Object.fromEntries(QUESTIONS[0].answers.map(([what, key]) => [key, () => answer(what)])), x: undo, p: () => choose(place - 1) });
   shuffle();
   const first = order.findIndex((i) => !whole(data.runs[i]));
   choose(Math.max(0, first));

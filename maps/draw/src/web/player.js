@@ -212,5 +212,23 @@ const player = (() => {
     // After a click the keys belong to the player again.
     addEventListener("click", (e) => { if (e.detail > 0 && e.target.closest("button") && document.activeElement) document.activeElement.blur(); });
   }
-  return { SAYS, View, Clock, keys, make, word, words, put, plain, secs, seconds };
+  // The controls of a page with one clock: play, time and speed, of which 0 is "all in 10 s". `show` draws a moment, `more` are keys of
+  // the page's own.
+  function controls(show, more) {
+    const at = (id) => document.getElementById(id);
+    const clock = new Clock((now) => {
+      at("time").value = now; at("clock").textContent = secs(now); at("time").setAttribute("aria-valuetext", secs(now));
+      show(now);
+    }, (on) => { at("play").textContent = on ? "❚❚" : "▶"; at("play").setAttribute("aria-label", on ? "pause" : "play"); });
+    const go = (t) => { clock.play(false); clock.set(t); };
+    const pace = () => { const speed = Number(at("speed").value); clock.rate = speed === 0 ? Math.max(clock.end / 10, 1) : speed; };
+    at("play").addEventListener("click", () => clock.toggle());
+    at("speed").addEventListener("change", pace);
+    at("time").addEventListener("input", (e) => go(Number(e.target.value)));
+    keys({ " ": () => clock.toggle(), ArrowRight: () => go(clock.now + 0.5), ArrowLeft: () => go(clock.now - 0.5), Home: () => go(0), End: () => go(clock.end), ...more });
+    // A run of this many seconds is what is played from now on.
+    const until = (end) => { clock.end = end; at("time").max = end; pace(); };
+    return { clock, go, until };
+  }
+  return { SAYS, View, Clock, controls, keys, make, word, words, put, plain, secs, seconds };
 })();

@@ -1,21 +1,17 @@
 (() => {
-  const { View, Clock, keys, word, words, plain, secs, seconds } = player;
+  const { View, controls, word, words, plain, secs, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
   const run = data.run, view = new View(at("map"), data.place);
   let focused = data.focus[2] < data.place.whole[2] - 1 || data.focus[3] < data.place.whole[3] - 1;
   at("zoom").hidden = !focused;
 
-  const clock = new Clock((now) => {
-    at("time").value = now; at("clock").textContent = secs(now);
-    at("time").setAttribute("aria-valuetext", secs(now));
+  const { clock, go, until } = controls((now) => {
     view.show(now);
     const past = story.filter(([t]) => t <= now + 0.05 && now - t < 2.5), newest = past[past.length - 1];
     at("caption").textContent = newest ? newest[2] : "";
     for (const [t, item] of story) item.className = t <= now + 0.05 ? "" : "later";
-  }, (on) => { at("play").textContent = on ? "❚❚" : "▶"; at("play").setAttribute("aria-label", on ? "pause" : "play"); });
-  const go = (t) => { clock.play(false); clock.set(t); };
-  function pace() { const speed = Number(at("speed").value); clock.rate = speed === 0 ? Math.max(clock.end / 10, 1) : speed; }
+  });
   function lay() {
     at("zoom").textContent = focused ? "whole map" : "where it happens";
     view.lay(focused ? data.focus : data.place.whole); view.show(clock.now);
@@ -43,16 +39,12 @@
   at("thresholds").textContent = data.thresholds;
 
   view.load(run);
-  clock.end = seconds(run); at("time").max = clock.end; pace();
+  until(seconds(run));
   at("length").textContent = secs(clock.end);
   at("people").textContent = String(run.agents.filter((agent) => agent.number !== 0).length);
-  at("play").addEventListener("click", () => clock.toggle());
   at("zoom").addEventListener("click", () => { focused = !focused; lay(); });
-  at("speed").addEventListener("change", pace);
-  at("time").addEventListener("input", (e) => go(Number(e.target.value)));
   at("time").style.width = "100%";
   addEventListener("resize", lay);
-  keys({ " ": () => clock.toggle(), ArrowRight: () => go(clock.now + 0.5), ArrowLeft: () => go(clock.now - 0.5), Home: () => go(0), End: () => go(clock.end) });
   lay(); clock.set(0);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) clock.play(true);
 })();

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use socrates_model::{PlannerName, Report, Run};
 use socrates_scoring::compare::Entry;
 
-use crate::bundle::{self, Manifest};
+use crate::bundle;
 use crate::exit::Complaint;
 use crate::{batch, library_index};
 
@@ -20,24 +20,21 @@ pub(super) struct Scenario {
     request: String,
     location: String,
     reports: Vec<Report>,
-    /// Runs without a result, and why there is none.
-    failed: Vec<(Run, String)>,
+    /// Why runs have no result, with which.
+    failed: Vec<(String, Run)>,
 }
 
 impl Scenario {
     fn read(dir: &Path, name: String) -> Result<Self, Complaint> {
         let bundle = bundle::read_some(dir, |_, _| false)?;
         let reports = bundle::reports(dir, &bundle.manifest)?;
-        let Manifest { request, scenario, failed, .. } = bundle.manifest;
-        let told =
-            |faults: &[socrates_model::Fault]| faults.iter().map(ToString::to_string).collect::<Vec<_>>().join(" · ");
         Ok(Self {
             name,
             dir: dir.to_path_buf(),
-            request: if request.is_empty() { scenario } else { request },
+            request: bundle.manifest.request_name().to_owned(),
             location: bundle.location.name,
             reports,
-            failed: failed.into_iter().map(|failed| (failed.run, told(&failed.faults))).collect(),
+            failed: bundle.manifest.failed.into_iter().map(|failed| (failed.told(), failed.run)).collect(),
         })
     }
 
@@ -46,7 +43,7 @@ impl Scenario {
         let (scenario, request, location) = (self.name.as_str(), self.request.as_str(), self.location.as_str());
         let entry = move |planner, seed, result| Entry { scenario, request, location, planner, seed, result };
         let have = self.reports.iter().map(move |report| entry(&report.planner, report.seed, Ok(report)));
-        have.chain(self.failed.iter().map(move |(run, why)| entry(&run.planner, run.seed, Err(why.as_str()))))
+        have.chain(self.failed.iter().map(move |(why, run)| entry(&run.planner, run.seed, Err(why.as_str()))))
     }
 
     /// Seeds that all these planners have a result of, in the order of the runs.

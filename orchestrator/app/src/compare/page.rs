@@ -3,18 +3,42 @@
 use std::path::Path;
 
 use socrates_draw::{Beside, ComparePage, Head, MeanRow, MetricRow, Part, PlannerRow};
-use socrates_model::{Digest, PlannerName, Recording, Report, Run, Verdict};
+use socrates_model::{PlannerName, Recording, Report, Run, Verdict};
 use socrates_scoring::compare::{Cause, Comparison, Outcome, Row};
 
 use super::found::{Found, Scenario};
 use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
 use crate::files;
+use crate::opaque;
 use crate::output::Printer;
 use crate::progress::Progress;
 
+/// A comparison as the page and programs have it.
+pub(super) struct Rows {
+    /// What became of the runs, by planner.
+    pub(super) planners: Vec<PlannerRow>,
+    /// Figures, by metric.
+    pub(super) metrics: Vec<MetricRow>,
+}
+
+impl Rows {
+    pub(super) fn of(comparison: &Comparison) -> Self {
+        Self {
+            planners: comparison.outcomes.iter().map(planner_row).collect(),
+            metrics: comparison.rows.iter().map(metric_row).collect(),
+        }
+    }
+}
+
 /// Writes the page and says how many scenarios and seeds are not played on it.
-pub(super) fn write(talk: &Printer, file: &Path, found: &Found, comparison: &Comparison) -> Result<usize, Complaint> {
+pub(super) fn write(
+    talk: &Printer,
+    file: &Path,
+    found: &Found,
+    comparison: &Comparison,
+    rows: &Rows,
+) -> Result<usize, Complaint> {
     let mut page = ComparePage::default();
     let mut wanted: Vec<(usize, u64, &Scenario)> = Vec::new();
     for scenario in &found.scenarios {
@@ -37,7 +61,6 @@ pub(super) fn write(talk: &Printer, file: &Path, found: &Found, comparison: &Com
     }
     drop(progress);
     let left_out = all - played;
-    let (planners, rows) = (planner_rows(comparison), metric_rows(comparison));
     let names: Vec<&str> = comparison.planners.iter().map(PlannerName::as_str).collect();
     let title = format!("{} compared", names.join(", "));
     let head = Head {
@@ -45,8 +68,8 @@ pub(super) fn write(talk: &Printer, file: &Path, found: &Found, comparison: &Com
         thresholds: &comparison.thresholds,
         common: comparison.common,
         left_out,
-        planners: &planners,
-        rows: &rows,
+        planners: &rows.planners,
+        rows: &rows.metrics,
     };
     files::write(file, page.html(&title, &head).as_bytes())?;
     Ok(left_out)
@@ -79,23 +102,16 @@ fn add(
         location: &bundle.location,
         way: bundle.location.graph.polyline(&bundle.paths.robot),
         runs,
-        hidden_order: hidden(&scenario.name, seed, planners),
+        hidden_order: hidden(&bundle.manifest.scenario, seed, planners),
     }))
 }
 
 /// An order of the planners that tells nothing of them and is the same every time.
-pub(super) fn hidden(scenario: &str, seed: u64, planners: &[PlannerName]) -> Vec<usize> {
+fn hidden(scenario: &str, seed: u64, planners: &[PlannerName]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..planners.len()).collect();
-    let drawn = |place: &usize| {
-        planners.get(*place).map(|planner| Digest::of(format!("{scenario} {seed} {planner}").as_bytes()))
-    };
-    order.sort_by_key(drawn);
+    let run = |place: &usize| planners.get(*place).map(|planner| Run { planner: planner.clone(), seed });
+    order.sort_by_key(|place| run(place).map(|run| opaque::rank(scenario, &run)));
     order
-}
-
-/// What became of the runs, as the page has it.
-pub(super) fn planner_rows(comparison: &Comparison) -> Vec<PlannerRow> {
-    comparison.outcomes.iter().map(planner_row).collect()
 }
 
 fn planner_row(outcome: &Outcome) -> PlannerRow {
@@ -137,11 +153,6 @@ const fn in_words(cause: Cause) -> (&'static str, &'static str) {
     }
 }
 
-/// The figures, as the page has them.
-pub(super) fn metric_rows(comparison: &Comparison) -> Vec<MetricRow> {
-    comparison.rows.iter().map(metric_row).collect()
-}
-
 fn metric_row(row: &Row) -> MetricRow {
     let differences = std::iter::once(None).chain(row.differences.iter().map(|it| Some((it.estimate, it.interval))));
     let means = row.means.iter().zip(differences).map(|(mean, difference)| MeanRow {
@@ -153,10 +164,7 @@ fn metric_row(row: &Row) -> MetricRow {
     let order = row.order.as_ref();
     MetricRow {
         id: row.metric.id,
-        unit: match row.metric.unit {
-            "0/1" | "share" | "count" => "",
-            unit => unit,
-        },
+        unit: row.metric.unit_shown().unwrap_or_default(),
         about: row.metric.about,
         sign: row.metric.direction.sign(),
         runs: row.runs,

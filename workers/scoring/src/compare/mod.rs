@@ -20,6 +20,7 @@ use socrates_model::{PlannerName, Report};
 use crate::metrics::{KEY_FIGURES, Sheet, sheet};
 use crate::pool::{PoolFault, PooledRun, alike};
 
+use outcome::References;
 pub use outcome::{Cause, Outcome};
 pub use rows::{Difference, Mean, Order, Row};
 pub use write::runs_csv;
@@ -162,6 +163,7 @@ pub fn compare(entries: &[Entry<'_>], planners: &[PlannerName]) -> Result<Compar
     let scenarios: BTreeSet<&str> = common.iter().map(|(scenario, _)| *scenario).collect();
     let resampled =
         if scenarios.len() > 1 { Resampled::Scenarios(scenarios.len()) } else { Resampled::Seeds(common.len()) };
+    let references = References::of(entries);
     let wanted = KEY_FIGURES.iter().chain(&BESIDE).filter_map(|id| sheet(id));
     Ok(Comparison {
         thresholds,
@@ -169,7 +171,7 @@ pub fn compare(entries: &[Entry<'_>], planners: &[PlannerName]) -> Result<Compar
         scenarios: entries.iter().map(|entry| entry.scenario).collect::<BTreeSet<_>>().len(),
         common: common.len(),
         resampled,
-        outcomes: planners.iter().map(|planner| outcome::of(planner, entries)).collect(),
+        outcomes: planners.iter().map(|planner| outcome::of(planner, entries, &references)).collect(),
         rows: wanted.filter_map(|metric| rows::row(metric, &by_planner, &common, resampled)).collect(),
     })
 }

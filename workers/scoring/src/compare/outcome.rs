@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::{PlannerName, Report, Verdict};
 
-use super::Entry;
+use super::{Entry, Key};
 
 /// People who are on average over time so much farther from where they are without a robot than they are with the reference robot, m,
 /// were held up or moved by this one: as much as a person's width. With the reference robot too they wait and step aside.
@@ -98,15 +98,25 @@ const fn came_about(verdict: Verdict) -> bool {
     }
 }
 
-/// By whose doing a run was not realised; `None` for one that was, or that has no result.
-pub(super) fn cause(entry: &Entry<'_>, all: &[Entry<'_>]) -> Option<Cause> {
-    let report = entry.result.ok().filter(|report| !came_about(report.verdict))?;
-    let reference = all.iter().find(|other| other.planner.is_reference() && other.key() == entry.key());
-    Some(match reference.and_then(|reference| reference.result.ok()) {
-        Some(reference) if came_about(reference.verdict) => by_robot(report, reference),
-        Some(_) => Cause::Scenario,
-        None => Cause::Unknown,
-    })
+/// The runs of the reference robot, by scenario and seed: what the others are held against.
+pub(super) struct References<'a>(BTreeMap<Key<'a>, &'a Report>);
+
+impl<'a> References<'a> {
+    /// Those among these runs.
+    pub(super) fn of(all: &[Entry<'a>]) -> Self {
+        let reference = all.iter().filter(|entry| entry.planner.is_reference());
+        Self(reference.filter_map(|entry| Some((entry.key(), entry.result.ok()?))).collect())
+    }
+
+    /// By whose doing a run was not realised; `None` for one that was, or that has no result.
+    pub(super) fn cause(&self, entry: &Entry<'a>) -> Option<Cause> {
+        let report = entry.result.ok().filter(|report| !came_about(report.verdict))?;
+        Some(match self.0.get(&entry.key()) {
+            Some(reference) if came_about(reference.verdict) => by_robot(report, reference),
+            Some(_) => Cause::Scenario,
+            None => Cause::Unknown,
+        })
+    }
 }
 
 fn by_robot(report: &Report, reference: &Report) -> Cause {
@@ -119,7 +129,7 @@ fn by_robot(report: &Report, reference: &Report) -> Cause {
 }
 
 /// What became of a planner's runs among all.
-pub(super) fn of(planner: &PlannerName, all: &[Entry<'_>]) -> Outcome {
+pub(super) fn of<'a>(planner: &PlannerName, all: &[Entry<'a>], references: &References<'a>) -> Outcome {
     let own = || all.iter().filter(|entry| entry.planner == planner);
     let reports = || own().filter_map(|entry| entry.result.ok());
     let above = |id: &str| {
@@ -128,7 +138,7 @@ pub(super) fn of(planner: &PlannerName, all: &[Entry<'_>]) -> Outcome {
     };
     let (mut verdicts, mut causes) = (BTreeMap::new(), BTreeMap::new());
     reports().for_each(|report| *verdicts.entry(report.verdict).or_default() += 1);
-    own().filter_map(|entry| cause(entry, all)).for_each(|cause| *causes.entry(cause).or_default() += 1);
+    own().filter_map(|entry| references.cause(entry)).for_each(|cause| *causes.entry(cause).or_default() += 1);
     Outcome {
         planner: planner.clone(),
         runs: own().count(),
@@ -158,7 +168,7 @@ mod tests {
             let mut all = vec![with("orca", Verdict::NotTriggered, moved_m)];
             all.extend(reference.map(|(verdict, moved_m)| with("reference", verdict, moved_m)));
             let entries = entries(&all);
-            cause(&entries[0], &entries)
+            References::of(&entries).cause(&entries[0])
         };
         let realised = Some((Verdict::RealisedLate, Some(1.0)));
         assert_eq!(caused(realised, Some(1.8)), Some(Cause::HeldPeople));
@@ -172,7 +182,8 @@ mod tests {
         assert_eq!(caused(Some((Verdict::Contradicted, Some(1.0))), Some(1.8)), Some(Cause::Scenario));
         assert_eq!(caused(None, Some(1.8)), Some(Cause::Unknown));
         let all = [with("orca", Verdict::Realised, None)];
-        assert_eq!(cause(&entries(&all)[0], &entries(&all)), None);
+        let entries = entries(&all);
+        assert_eq!(References::of(&entries).cause(&entries[0]), None);
     }
 
     #[test]
@@ -180,7 +191,8 @@ mod tests {
         let mut all =
             vec![made("a", "orca", 1, Some(1.0)), made("a", "orca", 2, None), made("a", "orca", 3, Some(0.1))];
         all[0].report.as_mut().unwrap().verdict = Verdict::Realised;
-        let found = of(&all[0].planner.clone(), &entries(&all));
+        let entries = entries(&all);
+        let found = of(entries[0].planner, &entries, &References::of(&entries));
         assert_eq!((found.runs, found.without_result, found.realised(), found.contact), (3, 1, 1, 1));
         assert_eq!(found.verdicts.values().sum::<usize>() + found.without_result, found.runs);
         assert_eq!(found.causes.get(&Cause::Unknown), Some(&1));

@@ -1,9 +1,8 @@
 //! A comparison as tables of other programs: every run as CSV, the differences as CSV, the figures as LaTeX.
 
-use socrates_model::PlannerName;
-use socrates_stream::csv::joined;
+use socrates_stream::csv::{joined, one_line};
 
-use super::outcome::cause;
+use super::outcome::References;
 use super::{Comparison, Entry, Resampled, Row};
 use crate::metrics::{Direction, Sheet, sheets};
 
@@ -16,16 +15,15 @@ const COLUMNS: [&str; 8] = ["scenario", "request", "location", "planner", "seed"
 pub fn runs_csv(entries: &[Entry<'_>]) -> String {
     let metrics: Vec<&Sheet> = sheets().collect();
     let mut text = joined(COLUMNS.into_iter().chain(metrics.iter().map(|metric| metric.id))) + "\n";
+    let references = References::of(entries);
     for entry in entries {
         let (verdict, reason) = match entry.result {
             Ok(report) => (report.verdict.name(), report.verdict_text.as_str()),
             Err(why) => (socrates_model::ScenarioEnd::Failed.name(), why),
         };
-        // A reason of several lines would break tables that are read line by line.
-        let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
-        let caused = cause(entry, entries).map_or("", super::Cause::name);
+        let caused = references.cause(entry).map_or("", super::Cause::name);
         let head = [entry.scenario, entry.request, entry.location, entry.planner.as_str()].map(str::to_owned);
-        let middle = [entry.seed.to_string(), verdict.to_owned(), caused.to_owned(), reason];
+        let middle = [entry.seed.to_string(), verdict.to_owned(), caused.to_owned(), one_line(reason)];
         let values = metrics.iter().map(|metric| {
             let value = entry.result.ok().and_then(|report| report.metric(metric.id)?.value);
             value.map_or_else(String::new, |value| value.to_string())
@@ -38,10 +36,7 @@ pub fn runs_csv(entries: &[Entry<'_>]) -> String {
 
 /// A metric as LaTeX has it, with its unit and an arrow to what is better.
 fn heading(metric: &Sheet) -> String {
-    let unit = match metric.unit {
-        "0/1" | "share" | "count" => String::new(),
-        unit => format!(" [{}]", tex(unit)),
-    };
+    let unit = metric.unit_shown().map_or_else(String::new, |unit| format!(" [{}]", tex(unit)));
     let arrow = match metric.direction {
         Direction::Up => " $\\uparrow$",
         Direction::Down => " $\\downarrow$",
@@ -171,12 +166,6 @@ impl Comparison {
             if best(place) { format!("\\textbf{{{text}}}") } else { text }
         };
         row.means.iter().enumerate().map(cell).collect()
-    }
-
-    /// The place of a planner.
-    #[must_use]
-    pub fn place(&self, planner: &PlannerName) -> Option<usize> {
-        self.planners.iter().position(|known| known == planner)
     }
 }
 

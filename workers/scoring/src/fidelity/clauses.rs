@@ -5,8 +5,8 @@ use std::convert::identity;
 
 use socrates_model::report::Standing;
 use socrates_model::{
-    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Proposal, Relation, Rule, Trigger,
-    ordinal, rule::RobotDo,
+    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Paths, Predicate, Proposal, Relation, Rule,
+    Trigger, ordinal, rule::RobotDo,
 };
 
 use crate::evidence::Evidence;
@@ -230,20 +230,53 @@ fn nearest_asked_m(plan: &Proposal, human: HumanId) -> f64 {
     at_m.fold(MEET_NODE_M, f64::max)
 }
 
+/// A clause that decides and that no proposal lists.
+const fn setup(id: String, text: String, predicate: Predicate) -> Clause {
+    Clause { id, text, role: ClauseRole::Setup, must: true, source: String::new(), predicate }
+}
+
+/// Whether a clause that decides is given already.
+fn has(given: &[Clause], test: &dyn Fn(&Predicate) -> bool) -> bool {
+    given.iter().any(|clause| clause.role == ClauseRole::Setup && clause.must && test(&clause.predicate))
+}
+
+/// Every encounter of the paths that no given clause tells of.
+fn meetings(signals: &Signals<'_>, given: &[Clause], paths: &Paths) -> Vec<Clause> {
+    let mut more = Vec::new();
+    let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
+    for encounter in &paths.encounters {
+        let human = encounter.human;
+        let shown = only_follows(signals, given, human) || made_way(signals, human);
+        let aside = |plan: &Proposal| plan.human(human).is_some_and(|one| one.relation == Relation::Aside);
+        let apart = |plan: &Proposal| plan.is_let_through(human) || plan.is_leaving_path(human) || aside(plan);
+        if shown || signals.evidence.proposal.is_some_and(apart) || !stands_for_queue(signals, given, human) {
+            continue;
+        }
+        let nth = met.entry(human).and_modify(|nth| *nth += 1).or_insert(1);
+        if *nth > 1 {
+            let nth = *nth;
+            let again = |predicate: &Predicate| matches!(predicate, Predicate::MeetsAgain { human: who, nth: which, within_m } if *who == human && *which == nth && *within_m <= MEET_NODE_M);
+            if !has(given, &again) {
+                let text = format!("{human} meets the robot for the {} time near {}", ordinal(nth), encounter.node);
+                let predicate = Predicate::MeetsAgain { human, nth, within_m: MEET_NODE_M };
+                more.push(setup(format!("auto-meet-{human}-{nth}"), text, predicate));
+            }
+            continue;
+        }
+        let within_m = signals.evidence.proposal.map_or(MEET_NODE_M, |plan| nearest_asked_m(plan, human));
+        let meets = |predicate: &Predicate| matches!(predicate, Predicate::Meets { human: who, within_m: asked } if *who == human && *asked <= within_m);
+        if !has(given, &meets) {
+            let text = format!("{human} meets the robot near {}", encounter.node);
+            more.push(setup(format!("auto-meet-{human}"), text, Predicate::Meets { human, within_m }));
+        }
+    }
+    more
+}
+
 /// What must be seen whatever the proposal lists: everybody is there, nobody breaks physics, and
 /// every encounter of the paths happens. A scenario cannot be realised by promising nothing.
 fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
-    let setup = |id: String, text: String, predicate: Predicate| Clause {
-        id,
-        text,
-        role: ClauseRole::Setup,
-        must: true,
-        source: String::new(),
-        predicate,
-    };
-    let has = |test: &dyn Fn(&Predicate) -> bool| {
-        given.iter().any(|clause| clause.role == ClauseRole::Setup && clause.must && test(&clause.predicate))
-    };
+    let has = |test: &dyn Fn(&Predicate) -> bool| has(given, test);
     let mut more = Vec::new();
     if let Some(proposal) = signals.evidence.proposal {
         let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
@@ -251,35 +284,7 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
             more.push(setup("auto-humans".into(), format!("there are {count} humans"), Predicate::Humans { count }));
         }
     }
-    if let Some(paths) = signals.evidence.paths {
-        let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
-        for encounter in &paths.encounters {
-            let human = encounter.human;
-            let shown = only_follows(signals, given, human) || made_way(signals, human);
-            let aside = |plan: &Proposal| plan.human(human).is_some_and(|one| one.relation == Relation::Aside);
-            let apart = |plan: &Proposal| plan.is_let_through(human) || plan.is_leaving_path(human) || aside(plan);
-            if shown || signals.evidence.proposal.is_some_and(apart) || !stands_for_queue(signals, given, human) {
-                continue;
-            }
-            let nth = met.entry(human).and_modify(|nth| *nth += 1).or_insert(1);
-            if *nth > 1 {
-                let nth = *nth;
-                let again = |predicate: &Predicate| matches!(predicate, Predicate::MeetsAgain { human: who, nth: which, within_m } if *who == human && *which == nth && *within_m <= MEET_NODE_M);
-                if !has(&again) {
-                    let text = format!("{human} meets the robot for the {} time near {}", ordinal(nth), encounter.node);
-                    let predicate = Predicate::MeetsAgain { human, nth, within_m: MEET_NODE_M };
-                    more.push(setup(format!("auto-meet-{human}-{nth}"), text, predicate));
-                }
-                continue;
-            }
-            let within_m = signals.evidence.proposal.map_or(MEET_NODE_M, |plan| nearest_asked_m(plan, human));
-            let meets = |predicate: &Predicate| matches!(predicate, Predicate::Meets { human: who, within_m: asked } if *who == human && *asked <= within_m);
-            if !has(&meets) {
-                let text = format!("{human} meets the robot near {}", encounter.node);
-                more.push(setup(format!("auto-meet-{human}"), text, Predicate::Meets { human, within_m }));
-            }
-        }
-    }
+    more.extend(signals.evidence.paths.into_iter().flat_map(|paths| meetings(signals, given, paths)));
     if let (Some(proposal), Some(paths)) = (signals.evidence.proposal, signals.evidence.paths) {
         let crowd = has(&|predicate| {
             matches!(predicate, Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. })

@@ -286,6 +286,15 @@ impl Sheet {
         REVISED.iter().find(|(id, _)| *id == self.id).map_or(plain, |(_, version)| *version)
     }
 
+    /// The unit that stands behind a number; nothing behind counts, shares, and yes or no.
+    #[must_use]
+    pub fn unit_shown(&self) -> Option<&'static str> {
+        match self.unit {
+            "0/1" | "share" | "count" => None,
+            unit => Some(unit),
+        }
+    }
+
     /// Whether the value is another tool's, with its dependence on sampling rate and map.
     #[must_use]
     pub fn as_coded_elsewhere(&self) -> bool {

@@ -162,7 +162,7 @@ impl RobotDriver for Kept {
 pub(crate) struct Ending<'a> {
     onlooker: &'a mut dyn Onlooker,
     ended: Ended,
-    /// Everybody as they were last.
+    /// Everybody as they were at the end.
     last: Vec<AgentState>,
 }
 
@@ -171,7 +171,7 @@ impl<'a> Ending<'a> {
         Self { onlooker, ended: Ended::default(), last: Vec::new() }
     }
 
-    /// Where somebody was last.
+    /// Where somebody was at the end.
     fn at(&self, agent: AgentId) -> Option<Point> {
         self.last.iter().find(|state| state.agent_id() == agent).map(AgentState::point)
     }
@@ -188,10 +188,9 @@ impl Onlooker for Ending<'_> {
             if let EventKind::End { reason } = &event.kind {
                 self.ended.reason.clone_from(reason);
                 self.ended.time_s = event.time.secs();
+                self.last = states.to_vec();
             }
         }
-        self.last.clear();
-        self.last.extend_from_slice(states);
         self.onlooker.tick(states, events);
     }
 }
