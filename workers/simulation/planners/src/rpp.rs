@@ -25,11 +25,15 @@ pub struct RppParams {
     pub lookahead_time: f64,
     /// Whether the distance goes by the speed; default true (Nav2 false: a fixed 0.6 m).
     pub use_velocity_scaled_lookahead_dist: bool,
-    /// Bends tighter than this radius are taken more slowly, m; default 0.9.
+    /// Whether bends are taken more slowly; default true.
+    pub use_regulated_linear_velocity_scaling: bool,
+    /// Those tighter than this radius are, m; default 0.9.
     pub regulated_linear_scaling_min_radius: f64,
     /// But not more slowly than this, m/s; default 0.25.
     pub regulated_linear_scaling_min_speed: f64,
-    /// Obstacles nearer than this are passed more slowly, m; default 0.6.
+    /// Whether obstacles are passed more slowly; default true.
+    pub use_cost_regulated_linear_velocity_scaling: bool,
+    /// Those nearer than this are, m; default 0.6.
     pub cost_scaling_dist: f64,
     /// Speed there as a multiple of the distance's share; default 1.
     pub cost_scaling_gain: f64,
@@ -41,13 +45,17 @@ pub struct RppParams {
     pub approach_velocity_scaling_dist: f64,
     /// But not more than to this, m/s; default 0.05.
     pub min_approach_linear_velocity: f64,
-    /// A point more than this to the side is turned to on the spot, rad; default 0.785.
+    /// Whether it turns on the spot: to a point far to the side, and to the goal's heading; default true.
+    pub use_rotate_to_heading: bool,
+    /// A point more than this to the side is turned to, rad; default 0.785.
     pub rotate_to_heading_min_angle: f64,
     /// At this speed, rad/s; default 1.8.
     pub rotate_to_heading_angular_vel: f64,
     /// So near to the goal it turns to the goal's heading, m; default 0.25.
     pub xy_goal_tolerance: f64,
-    /// It stops where it would hit something within this time, s; default 1.
+    /// Whether it stops before obstacles; default true.
+    pub use_collision_detection: bool,
+    /// It does where it would hit something within this time, s; default 1.
     pub max_allowed_time_to_collision_up_to_carrot: f64,
     /// Largest acceleration, m/s²; default 2.5.
     pub max_linear_accel: f64,
@@ -65,17 +73,21 @@ impl Default for RppParams {
             max_lookahead_dist: 0.9,
             lookahead_time: 1.5,
             use_velocity_scaled_lookahead_dist: true,
+            use_regulated_linear_velocity_scaling: true,
             regulated_linear_scaling_min_radius: 0.9,
             regulated_linear_scaling_min_speed: 0.25,
+            use_cost_regulated_linear_velocity_scaling: true,
             cost_scaling_dist: 0.6,
             cost_scaling_gain: 1.0,
             inflation_cost_scaling_factor: 3.0,
             robot_radius: 0.22,
             approach_velocity_scaling_dist: 0.6,
             min_approach_linear_velocity: 0.05,
+            use_rotate_to_heading: true,
             rotate_to_heading_min_angle: 0.785,
             rotate_to_heading_angular_vel: 1.8,
             xy_goal_tolerance: 0.25,
+            use_collision_detection: true,
             max_allowed_time_to_collision_up_to_carrot: 1.0,
             max_linear_accel: 2.5,
             max_angular_accel: 3.2,
@@ -126,10 +138,10 @@ impl RegulatedPurePursuit {
         let desired = params.desired_linear_vel;
         let mut speed = desired;
         let radius = if curvature.abs() > 1e-9 { 1.0 / curvature.abs() } else { f64::INFINITY };
-        if radius < params.regulated_linear_scaling_min_radius {
+        if params.use_regulated_linear_velocity_scaling && radius < params.regulated_linear_scaling_min_radius {
             speed = speed.min(desired * radius / params.regulated_linear_scaling_min_radius);
         }
-        if cost != FREE && cost != UNKNOWN {
+        if params.use_cost_regulated_linear_velocity_scaling && cost != FREE && cost != UNKNOWN {
             // The inflation layer's formula solved for the distance to the obstacle.
             let share = f64::from(cost.min(MOST)) / f64::from(MOST);
             let away_m = params.robot_radius - libm::log(share) / params.inflation_cost_scaling_factor;
@@ -213,9 +225,10 @@ impl Controller for RegulatedPurePursuit {
         let end = cycle.plan.last().map_or(target, Pose::point);
         // A way that only passes the goal leads on.
         let near = |from: Point| (cycle.goal.point() - from).norm() < params.xy_goal_tolerance;
-        let twist = if near(at) && near(end) {
+        let turns = params.use_rotate_to_heading;
+        let twist = if turns && near(at) && near(end) {
             self.turn(wrap_angle(cycle.goal.yaw - cycle.pose.yaw), cycle.speed.omega)
-        } else if angle.abs() > params.rotate_to_heading_min_angle {
+        } else if turns && angle.abs() > params.rotate_to_heading_min_angle {
             self.turn(angle, cycle.speed.omega)
         } else {
             // Nearer than a millimeter there is no bend to speak of.
@@ -231,7 +244,8 @@ impl Controller for RegulatedPurePursuit {
             speed = speed.max(cycle.speed.vx - change).min(cycle.speed.vx + change).max(0.0);
             Twist { vx: speed, vy: 0.0, omega: speed * curvature }
         };
-        if self.hits(cycle, &twist, libm::sqrt(carrot2)) { Err(NoControl::Collision) } else { Ok(twist) }
+        let hits = params.use_collision_detection && self.hits(cycle, &twist, libm::sqrt(carrot2));
+        if hits { Err(NoControl::Collision) } else { Ok(twist) }
     }
 
     fn reset(&mut self) {}
@@ -248,10 +262,21 @@ mod tests {
 
     /// One cycle at 0.5 m/s from the origin.
     fn command(plan: &[Pose], goal: Pose, costmap: &Costmap, vx: f64) -> Result<Twist, NoControl> {
+        command_of(RppParams::default(), plan, goal, costmap, vx)
+    }
+
+    /// The same of a controller with other parameters.
+    fn command_of(
+        params: RppParams,
+        plan: &[Pose],
+        goal: Pose,
+        costmap: &Costmap,
+        vx: f64,
+    ) -> Result<Twist, NoControl> {
         let speed = Twist { vx, ..Twist::default() };
         let pose = Pose::new(0.0, 0.0, 0.0);
         let cycle = Following { pose, speed, plan, goal, costmap, footprint: &[], speed_share: 1.0 };
-        RegulatedPurePursuit::default().command(&cycle)
+        RegulatedPurePursuit::new(&params).command(&cycle)
     }
 
     fn path(points: &[(f64, f64)]) -> Vec<Pose> {
@@ -318,5 +343,27 @@ mod tests {
         assert!((found.coords.norm() - 1.0).abs() < 1e-9 && (found.x - 0.3).abs() < 1e-12 && found.y > 0.4);
         assert_eq!(carrot(&path(&[(0.1, 0.0), (0.2, 0.0)]), &at, 1.0), Some(Point::new(0.2, 0.0)));
         assert_eq!(carrot(&path(&[(3.0, 0.0)]), &at, 1.0), Some(Point::new(3.0, 0.0)));
+    }
+
+    #[test]
+    fn each_of_its_habits_can_be_switched_off() {
+        let straight = path(&[(0.0, 0.0), (2.0, 0.0)]);
+        let mut walled = map();
+        let (column, _) = walled.cell(&Point::new(0.42, 0.0)).unwrap();
+        (0..200).for_each(|row| walled.set(column, row, INSCRIBED));
+        let blind = RppParams { use_collision_detection: false, ..RppParams::default() };
+        assert!(command_of(blind, &straight, FAR, &walled, 0.5).is_ok());
+        let mut costly = map();
+        costly.set(100, 100, 200);
+        let bold = RppParams { use_cost_regulated_linear_velocity_scaling: false, ..RppParams::default() };
+        assert!(command(&straight, FAR, &costly, 0.5).unwrap().vx < 0.45);
+        assert!((command_of(bold, &straight, FAR, &costly, 0.5).unwrap().vx - 0.5).abs() < 1e-9);
+        let bend = path(&[(0.6, 0.4), (1.0, 1.0)]);
+        let quick = RppParams { use_regulated_linear_velocity_scaling: false, ..RppParams::default() };
+        assert!(command(&bend, FAR, &map(), 0.5).unwrap().vx < 0.45);
+        assert!((command_of(quick, &bend, FAR, &map(), 0.5).unwrap().vx - 0.5).abs() < 1e-9);
+        let behind = path(&[(0.0, 0.0), (-2.0, 0.5)]);
+        let turns = RppParams { use_rotate_to_heading: false, ..RppParams::default() };
+        assert!(command_of(turns, &behind, FAR, &map(), 0.3).unwrap().vx > 0.0, "an arc instead of a turn on the spot");
     }
 }

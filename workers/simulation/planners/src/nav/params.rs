@@ -18,6 +18,8 @@ pub struct StackParams {
     pub scan_frequency: f64,
     /// So long the controller may have no command before that is an error, s; default 0.3.
     pub failure_tolerance: f64,
+    /// Measured speeds below these read as 0: forward, to the left, m/s, turning, rad/s; default 0.001, 0, 0.001.
+    pub least_speeds: [f64; 3],
     /// Radius of a round robot, and the inscribed radius of any other, m; default 0.22.
     pub robot_radius: f64,
     /// Outline of the robot in its own frame, m; default none: a disc.
@@ -49,6 +51,7 @@ impl Default for StackParams {
             planner_frequency: 1.0,
             scan_frequency: 10.0,
             failure_tolerance: 0.3,
+            least_speeds: [0.001, 0.0, 0.001],
             robot_radius: 0.22,
             footprint: Vec::new(),
             global_costmap: global(inflation(0.25)),

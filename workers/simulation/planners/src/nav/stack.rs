@@ -15,8 +15,6 @@ use crate::costmap::{Costmap, LayeredCostmap, Scan, Sensed};
 use crate::mission::Mission;
 use crate::navfn::NavFn;
 
-/// Speeds below these read as 0: forward, m/s, sideways, m/s, turning, rad/s. Nav2's `min_*_velocity_threshold`.
-const LEAST_SPEEDS: [f64; 3] = [0.001, 0.5, 0.001];
 /// Calls come at whole ticks: what is due within this is due, s.
 const SLACK_S: f64 = 1e-6;
 
@@ -67,6 +65,8 @@ pub struct Stack {
     path: PathHandler,
     controller: Box<dyn Controller>,
     goal: GoalChecker,
+    /// Measured speeds below these read as 0.
+    least_speeds: [f64; 3],
     progress: ProgressChecker,
     waypoints: WaypointFollower,
     smoother: VelocitySmoother,
@@ -97,6 +97,7 @@ impl Stack {
             path: PathHandler::new(&params.path),
             controller,
             goal: GoalChecker::new(&params.goal),
+            least_speeds: params.least_speeds,
             progress: ProgressChecker::new(&params.progress),
             waypoints: WaypointFollower::new(&params.waypoints, &mission.waypoints),
             smoother: VelocitySmoother::new(&params.smoother),
@@ -203,14 +204,19 @@ impl Stack {
         }
     }
 
+    /// The robot's speed as the odometry of Nav2 tells it: what is slower than its noise is 0.
+    fn measured(&self, seen: &Observation<'_>) -> Twist {
+        let read = |speed: f64, least: f64| if speed.abs() < least { 0.0 } else { speed };
+        let [x, y, turning] = self.least_speeds;
+        Twist { vx: read(seen.v, x), vy: read(seen.vy, y), omega: read(seen.omega, turning) }
+    }
+
     /// The controller's command. `None` where it has to recover.
     fn control(&mut self, seen: &Observation<'_>, goal: &Pose, now_s: f64) -> Option<Twist> {
+        let speed = self.measured(seen);
         let error = if self.progress.gets_on(&seen.pose, now_s) {
             let map = self.local.map();
             let plan = self.path.ahead(&seen.pose.point(), map);
-            let [least_x, _, least_turn] = LEAST_SPEEDS;
-            let read = |speed: f64, least: f64| if speed.abs() < least { 0.0 } else { speed };
-            let speed = Twist { vx: read(seen.v, least_x), vy: seen.vy, omega: read(seen.omega, least_turn) };
             let command = if plan.is_empty() {
                 Err(NoControl::NoPlan)
             } else {
@@ -324,7 +330,7 @@ impl Stack {
             return (stand, true);
         }
         let Some(goal) = self.waypoints.goal() else { return (stand, self.waypoints.missed().is_empty()) };
-        if self.goal.reached(&seen.pose, &goal, self.path.left_m()) {
+        if self.goal.reached(&seen.pose, &self.measured(seen), &goal, self.path.left_m()) {
             self.waypoints.reached(now_s);
             self.next_goal();
             return (stand, true);

@@ -25,8 +25,6 @@ pub struct CostmapServer {
     pub robot_radius: f64,
     /// Corners of the outline of any other robot, m; empty for a round one.
     pub footprint: Vec<[f64; 2]>,
-    /// Room added round the outline, m, at least 0. Default 0.01.
-    pub footprint_padding: f64,
     /// The layers that are switched on, first written first: `nav2_costmap_2d`'s static, obstacle, voxel (the same for a flat scan)
     /// and inflation, those of `social_navigation_layers`, `nav2_social_costmap_plugin` and Nav2CAN, and `socrates::OraclePeople`.
     pub layers: Vec<LayerParams>,
@@ -43,7 +41,6 @@ impl Default for CostmapServer {
             track_unknown_space: false,
             robot_radius: 0.1,
             footprint: Vec::new(),
-            footprint_padding: 0.01,
             layers: Vec::new(),
         }
     }
@@ -152,7 +149,7 @@ fn server(from: &mut Section<'_>) -> CostmapServer {
     from.flag("rolling_window", &mut found.rolling_window);
     from.flag("track_unknown_space", &mut found.track_unknown_space);
     from.number("robot_radius", &mut found.robot_radius, Range::Above0);
-    from.number("footprint_padding", &mut found.footprint_padding, Range::AtLeast0);
+    from.idle_number("footprint_padding", 0.0, Range::AtLeast0);
     found.footprint = from.outline("footprint").unwrap_or_default();
     for filter in from.texts("filters").unwrap_or_default() {
         from.skip(&[&filter]);

@@ -40,11 +40,19 @@ pub(super) struct Notes {
     pub(super) bad: Vec<BadValue>,
     /// Keys that nobody asked for, with their lines.
     pub(super) unknown: Vec<String>,
+    /// Keys that say something else than what this simulation does, with their lines.
+    pub(super) idle: Vec<String>,
 }
 
 impl Notes {
     pub(super) fn new(text: &str) -> Self {
         Self { text: text.to_owned(), ..Self::default() }
+    }
+
+    /// A key as a warning names it.
+    fn named(&self, path: &[String]) -> String {
+        let at = line_of(&self.text, path).map_or_else(String::new, |line| format!(" (line {line})"));
+        format!("`{}`{at}", path.join("."))
     }
 
     /// Notes a value that cannot be meant.
@@ -238,6 +246,44 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// Notes a key that says something else than what this simulation does.
+    fn idle(&self, key: &str, same: bool) {
+        if !same {
+            let mut notes = self.notes.borrow_mut();
+            let named = notes.named(&self.path(key));
+            notes.idle.push(named);
+        }
+    }
+
+    /// A number that is not acted on; `done` is what is done instead.
+    pub(super) fn idle_number(&mut self, key: &str, done: f64, allowed: Range) {
+        let mut found = done;
+        self.number(key, &mut found, allowed);
+        self.idle(key, (found - done).abs() < f64::EPSILON);
+    }
+
+    /// The same of a flag.
+    pub(super) fn idle_flag(&mut self, key: &str, done: bool) {
+        let mut found = done;
+        self.flag(key, &mut found);
+        self.idle(key, found == done);
+    }
+
+    /// The same of three numbers.
+    pub(super) fn idle_axes(&mut self, key: &str, done: [f64; 3]) {
+        let mut found = done;
+        self.axes(key, &mut found);
+        self.idle(key, found.iter().zip(done).all(|(found, done)| (found - done).abs() < f64::EPSILON));
+    }
+
+    /// The same of a choice.
+    pub(super) fn idle_choice(&mut self, key: &str, done: &str, choices: &[&str]) {
+        let choices: Vec<(&str, bool)> = choices.iter().map(|choice| (*choice, *choice == done)).collect();
+        let mut same = true;
+        self.choice(key, &mut same, &choices);
+        self.idle(key, same);
+    }
+
     /// An outline: a list of points, or Nav2's text of one.
     pub(super) fn outline(&mut self, key: &str) -> Option<Vec<[f64; 2]>> {
         self.read(key, "at least 3 points, as in \"[[0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1]]\"", |value| {
@@ -283,9 +329,8 @@ impl<'a> Section<'a> {
                 continue;
             }
             let mut notes = self.notes.borrow_mut();
-            let path = self.path(&name);
-            let at = line_of(&notes.text, &path).map_or_else(String::new, |line| format!(" (line {line})"));
-            notes.unknown.push(format!("`{}`{at}", path.join(".")));
+            let named = notes.named(&self.path(&name));
+            notes.unknown.push(named);
         }
     }
 }

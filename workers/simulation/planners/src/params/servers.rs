@@ -1,103 +1,8 @@
 //! The other servers: planner, velocity smoother, behaviors, waypoints.
 
 use super::section::{Range, Section};
+use crate::nav::{RecoveryParams, SmootherParams, WaypointParams};
 use crate::navfn::NavFnParams;
-
-/// `planner_server`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlannerServer {
-    /// Plans per second that are expected, Hz, above 0. Default 20.
-    pub expected_planner_frequency: f64,
-    /// The planner.
-    pub planner: NavFnParams,
-}
-
-impl Default for PlannerServer {
-    fn default() -> Self {
-        Self { expected_planner_frequency: 20.0, planner: NavFnParams::default() }
-    }
-}
-
-/// `velocity_smoother`. Axes: forward and to the left, m/s, turning, rad/s.
-#[derive(Debug, Clone, PartialEq)]
-pub struct VelocitySmoother {
-    /// Commands per second, Hz, above 0. Default 20.
-    pub smoothing_frequency: f64,
-    /// Whether all axes are slowed down alike. Default false.
-    pub scale_velocities: bool,
-    /// Whether the last command is taken for the speed now, `feedback: OPEN_LOOP`. Default true; `CLOSED_LOOP` is false.
-    pub open_loop: bool,
-    /// Largest speeds. Default 0.5, 0, 2.5.
-    pub max_velocity: [f64; 3],
-    /// Least speeds. Default -0.5, 0, -2.5.
-    pub min_velocity: [f64; 3],
-    /// Largest accelerations, /s. Default 2.5, 0, 3.2.
-    pub max_accel: [f64; 3],
-    /// Largest decelerations, /s. Default -2.5, 0, -3.2.
-    pub max_decel: [f64; 3],
-    /// Smaller speeds become 0. Default 0, 0, 0.
-    pub deadband_velocity: [f64; 3],
-    /// Time without a command after which the robot stops, s, above 0. Default 1.
-    pub velocity_timeout: f64,
-}
-
-impl Default for VelocitySmoother {
-    fn default() -> Self {
-        Self {
-            smoothing_frequency: 20.0,
-            scale_velocities: false,
-            open_loop: true,
-            max_velocity: [0.5, 0.0, 2.5],
-            min_velocity: [-0.5, 0.0, -2.5],
-            max_accel: [2.5, 0.0, 3.2],
-            max_decel: [-2.5, 0.0, -3.2],
-            deadband_velocity: [0.0; 3],
-            velocity_timeout: 1.0,
-        }
-    }
-}
-
-/// `behavior_server`: what the robot does when it is stuck.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BehaviorServer {
-    /// Cycles per second, Hz, above 0. Default 10.
-    pub cycle_frequency: f64,
-    /// How far ahead collisions are looked for, s, at least 0. Default 2.
-    pub simulate_ahead_time: f64,
-    /// Largest turning rate of a spin, rad/s, above 0. Default 1.
-    pub max_rotational_vel: f64,
-    /// Least turning rate of a spin, rad/s, at least 0. Default 0.4.
-    pub min_rotational_vel: f64,
-    /// Angular acceleration of a spin, rad/s², above 0. Default 3.2.
-    pub rotational_acc_lim: f64,
-}
-
-impl Default for BehaviorServer {
-    fn default() -> Self {
-        Self {
-            cycle_frequency: 10.0,
-            simulate_ahead_time: 2.0,
-            max_rotational_vel: 1.0,
-            min_rotational_vel: 0.4,
-            rotational_acc_lim: 3.2,
-        }
-    }
-}
-
-/// `waypoint_follower`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WaypointFollower {
-    /// Whether a waypoint that cannot be reached ends the drive. Default true; Nav2's files say false.
-    pub stop_on_failure: bool,
-    /// Pause at each waypoint, ms. Default 0.
-    pub waypoint_pause_duration: usize,
-}
-
-impl Default for WaypointFollower {
-    fn default() -> Self {
-        Self { stop_on_failure: true, waypoint_pause_duration: 0 }
-    }
-}
 
 /// Keys that every node has and that mean nothing here.
 pub(super) const OF_NODES: [&str; 4] =
@@ -113,10 +18,10 @@ pub(super) fn node<'a, T>(root: &mut Section<'a>, name: &str, read: impl FnOnce(
     })
 }
 
-pub(super) fn planner_server(from: &mut Section<'_>) -> PlannerServer {
-    let mut found = PlannerServer::default();
-    from.skip(&["allow_partial_planning", "costmap_update_timeout"]);
-    from.number("expected_planner_frequency", &mut found.expected_planner_frequency, Range::Above0);
+pub(super) fn planner_server(from: &mut Section<'_>) -> NavFnParams {
+    let mut found = NavFnParams::default();
+    // Nav2 complains of a planner that is slower than expected, and does nothing else.
+    from.skip(&["allow_partial_planning", "costmap_update_timeout", "expected_planner_frequency"]);
     let names = from.texts("planner_plugins");
     let name = names.and_then(|names| names.into_iter().next()).unwrap_or_else(|| "GridBased".to_owned());
     from.section(&name, |navfn| {
@@ -124,7 +29,7 @@ pub(super) fn planner_server(from: &mut Section<'_>) -> PlannerServer {
         if let Some(plugin) = navfn.text("plugin").filter(|plugin| !allowed.contains(&plugin.as_str())) {
             navfn.refuse("plugin", plugin, "`nav2_navfn_planner::NavfnPlanner`");
         }
-        let into = &mut found.planner;
+        let into = &mut found;
         navfn.number("tolerance", &mut into.tolerance, Range::AtLeast0);
         navfn.flag("use_astar", &mut into.use_astar);
         navfn.flag("allow_unknown", &mut into.allow_unknown);
@@ -134,17 +39,18 @@ pub(super) fn planner_server(from: &mut Section<'_>) -> PlannerServer {
     found
 }
 
-pub(super) fn velocity_smoother(from: &mut Section<'_>) -> VelocitySmoother {
-    let mut found = VelocitySmoother::default();
+/// `controller_frequency` is the rate at which this simulation smooths commands, Hz.
+pub(super) fn velocity_smoother(from: &mut Section<'_>, controller_frequency: f64) -> SmootherParams {
+    let mut found = SmootherParams::default();
     from.skip(&["odom_topic", "odom_duration", "use_realtime_priority", "enable_stamped_cmd_vel"]);
-    from.number("smoothing_frequency", &mut found.smoothing_frequency, Range::Above0);
-    from.flag("scale_velocities", &mut found.scale_velocities);
-    from.choice("feedback", &mut found.open_loop, &[("OPEN_LOOP", true), ("CLOSED_LOOP", false)]);
+    from.idle_number("smoothing_frequency", controller_frequency, Range::Above0);
+    from.idle_flag("scale_velocities", false);
+    from.idle_choice("feedback", "OPEN_LOOP", &["OPEN_LOOP", "CLOSED_LOOP"]);
     from.axes("max_velocity", &mut found.max_velocity);
     from.axes("min_velocity", &mut found.min_velocity);
     from.axes("max_accel", &mut found.max_accel);
     from.axes("max_decel", &mut found.max_decel);
-    from.axes("deadband_velocity", &mut found.deadband_velocity);
+    from.idle_axes("deadband_velocity", [0.0; 3]);
     from.number("velocity_timeout", &mut found.velocity_timeout, Range::Above0);
     for (key, values, allowed, good) in [
         ("max_velocity", found.max_velocity, "three numbers of at least 0", true),
@@ -159,8 +65,8 @@ pub(super) fn velocity_smoother(from: &mut Section<'_>) -> VelocitySmoother {
     found
 }
 
-pub(super) fn behavior_server(from: &mut Section<'_>) -> BehaviorServer {
-    let mut found = BehaviorServer::default();
+pub(super) fn behavior_server(from: &mut Section<'_>) -> RecoveryParams {
+    let mut found = RecoveryParams::default();
     from.skip(&[
         "local_costmap_topic",
         "global_costmap_topic",
@@ -172,12 +78,13 @@ pub(super) fn behavior_server(from: &mut Section<'_>) -> BehaviorServer {
         "global_frame",
         "robot_base_frame",
         "transform_tolerance",
+        // Recoveries go by the steps of the controller, which are shorter.
+        "cycle_frequency",
     ]);
     // Which behaviors there are is the navigator's to say.
     for behavior in from.texts("behavior_plugins").unwrap_or_default() {
         from.skip(&[&behavior]);
     }
-    from.number("cycle_frequency", &mut found.cycle_frequency, Range::Above0);
     from.number("simulate_ahead_time", &mut found.simulate_ahead_time, Range::AtLeast0);
     from.number("max_rotational_vel", &mut found.max_rotational_vel, Range::Above0);
     from.number("min_rotational_vel", &mut found.min_rotational_vel, Range::AtLeast0);
@@ -185,18 +92,19 @@ pub(super) fn behavior_server(from: &mut Section<'_>) -> BehaviorServer {
     found
 }
 
-pub(super) fn waypoint_follower(from: &mut Section<'_>) -> WaypointFollower {
-    let mut found = WaypointFollower::default();
+pub(super) fn waypoint_follower(from: &mut Section<'_>) -> WaypointParams {
+    // Nav2's own values where the file says nothing; its files say false, and 200 ms.
+    let mut found = WaypointParams { stop_on_failure: true, waypoint_pause_duration: 0.0 };
     from.skip(&["loop_rate", "global_frame_id"]);
     from.flag("stop_on_failure", &mut found.stop_on_failure);
     if let Some(executor) = from.text("waypoint_task_executor_plugin") {
         from.section(&executor, |task| {
             task.skip(&["plugin"]);
-            let mut enabled = true;
+            let (mut enabled, mut pause_ms) = (true, 0);
             task.flag("enabled", &mut enabled);
-            task.whole("waypoint_pause_duration", &mut found.waypoint_pause_duration, 0);
-            if !enabled {
-                found.waypoint_pause_duration = 0;
+            task.small("waypoint_pause_duration", &mut pause_ms, "a whole number of milliseconds", 0, u32::MAX);
+            if enabled {
+                found.waypoint_pause_duration = f64::from(pause_ms) / 1000.0;
             }
         });
     }

@@ -112,7 +112,7 @@ fn the_file_that_nav2_brings_up_is_read_as_it_is() {
     assert!(local.rolling_window && (local.width - 3.0).abs() < 1e-12 && local.layers.len() == 2);
     let global = &loaded.params.global_costmap;
     assert!(global.track_unknown_space && global.layers.len() == 3);
-    assert_eq!(loaded.params.waypoint_follower.waypoint_pause_duration, 200);
+    assert!((loaded.params.waypoint_follower.waypoint_pause_duration - 0.2).abs() < 1e-12);
     assert!((loaded.params.controller_server.failure_tolerance - 0.3).abs() < 1e-12);
 }
 
@@ -120,7 +120,7 @@ fn the_file_that_nav2_brings_up_is_read_as_it_is() {
 fn nothing_at_all_is_nav2s_defaults() {
     let loaded = read("").unwrap();
     assert_eq!(loaded.warning, None);
-    assert_eq!(loaded.params.velocity_smoother, VelocitySmoother::default());
+    assert_eq!(loaded.params.velocity_smoother, crate::nav::SmootherParams::default());
     assert_eq!(loaded.params.local_costmap.layers.len(), 3);
     assert_eq!(mppi(&loaded).critics, MppiParams::default().critics);
 }
@@ -137,6 +137,30 @@ fn unknown_keys_are_named_once_with_their_lines() {
          `controller_server.ros__parameters.FollowPath.vx_maxx` (line 8), \
          `controller_server.ros__parameters.controler_frequency` (line 6), `my_node` (line 9)"
     );
+}
+
+#[test]
+fn keys_without_effect_are_named_where_they_ask_for_something_else() {
+    let text = "controller_server:\n  ros__parameters:\n    controller_frequency: 20.0\n    FollowPath:\n      \
+                enforce_path_inversion: true\n\
+                velocity_smoother:\n  ros__parameters:\n    smoothing_frequency: 10.0\n    feedback: CLOSED_LOOP\n    \
+                scale_velocities: true\n    deadband_velocity: [0.0, 0.0, 0.1]\n\
+                local_costmap:\n  local_costmap:\n    ros__parameters:\n      footprint_padding: 0.05\n";
+    let warning = read(text).unwrap().warning.unwrap();
+    assert_eq!(
+        warning,
+        "these keys of the parameter file ask for what is not done here, and have no effect: \
+         `controller_server.ros__parameters.FollowPath.enforce_path_inversion` (line 5), \
+         `local_costmap.local_costmap.ros__parameters.footprint_padding` (line 15), \
+         `velocity_smoother.ros__parameters.smoothing_frequency` (line 8), \
+         `velocity_smoother.ros__parameters.scale_velocities` (line 10), \
+         `velocity_smoother.ros__parameters.feedback` (line 9), \
+         `velocity_smoother.ros__parameters.deadband_velocity` (line 11)"
+    );
+    let same = text.replace("true", "false").replace("10.0", "20.0").replace("CLOSED", "OPEN");
+    let same = same.replace("0.1]", "0.0]").replace("0.05", "0.0");
+    assert_eq!(read(&same).unwrap().warning, None);
+    assert!(values(&text.replace("CLOSED_LOOP", "BOTH"))[0].allowed.contains("`OPEN_LOOP`"));
 }
 
 #[test]
