@@ -1,0 +1,3 @@
+//! What viewers see of a run while it happens: a page of its own, Foxglove and Lichtblick, and files.
+
+pub mod fox;
