@@ -3,6 +3,7 @@
 
 mod bags;
 mod drivers;
+mod live;
 mod looks;
 mod models;
 mod python;

@@ -11,6 +11,7 @@ use super::modules::{EVERYTHING, Module, Named, program};
 const ROOMS: &[&str] = &[
     "bus/stream",
     "workers/authoring",
+    "workers/gateway",
     "workers/scoring/stats",
     "workers/simulation",
     "workers/simulation/planners",

@@ -45,7 +45,21 @@ pub trait Bus: Send + Sync + 'static {
     /// [`LinkError::TooLarge`], [`LinkError::BadKey`], [`LinkError::Closed`], [`LinkError::Transport`].
     async fn query(&self, key: &str, body: Vec<u8>, timeout: Duration) -> Result<Vec<u8>, LinkError>;
 
-    /// Serves a key: queries come as [`Ask`]s until the [`Serving`] is dropped. One process serves a key.
+    /// Asks everybody who serves a key under the expression and gives the replies that came within `timeout`, at most `most` of them,
+    /// in the order in which they came. Nobody serving is no error.
+    ///
+    /// # Errors
+    /// [`LinkError::TooLarge`], [`LinkError::BadKey`], [`LinkError::Closed`], [`LinkError::Transport`].
+    async fn query_all(
+        &self,
+        expression: &str,
+        body: Vec<u8>,
+        most: usize,
+        timeout: Duration,
+    ) -> Result<Vec<Vec<u8>>, LinkError>;
+
+    /// Serves a key, or every key under an expression: queries come as [`Ask`]s until the [`Serving`] is dropped. One process serves
+    /// a key.
     ///
     /// # Errors
     /// [`LinkError::BadKey`], [`LinkError::Closed`], [`LinkError::Transport`].

@@ -56,10 +56,7 @@ impl<T> Envelope<T> {
     #[must_use]
     pub fn fresh(kind: &str, sender: &str, epoch: u64, body: T) -> Self {
         let id = uuid::Uuid::now_v7();
-        let sent_ms = id.get_timestamp().map_or(0, |stamp| {
-            let (secs, nanos) = stamp.to_unix();
-            secs.saturating_mul(1000).saturating_add(u64::from(nanos) / 1_000_000)
-        });
+        let sent_ms = wall_ms_of(&id);
         Self {
             v: VERSION,
             min_v: MIN_VERSION,
@@ -71,6 +68,20 @@ impl<T> Envelope<T> {
             body,
         }
     }
+}
+
+/// The wall time now, ms since 1970: shown, never decides.
+#[must_use]
+pub fn wall_ms() -> u64 {
+    wall_ms_of(&uuid::Uuid::now_v7())
+}
+
+/// The wall time of an id, ms since 1970.
+fn wall_ms_of(id: &uuid::Uuid) -> u64 {
+    id.get_timestamp().map_or(0, |stamp| {
+        let (secs, nanos) = stamp.to_unix();
+        secs.saturating_mul(1000).saturating_add(u64::from(nanos) / 1_000_000)
+    })
 }
 
 /// Writes a message.

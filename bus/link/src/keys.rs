@@ -7,7 +7,9 @@
 //! | `cmd/<instance>` | put, [`crate::Qos::Control`] | cancel, drain |
 //! | `ev/<batch>/<scenario>` | put, [`crate::Qos::Hint`] | numbered notices for viewers |
 //! | `live/orch/<id>`, `live/worker/<stage>/<instance>` | presence tokens | hastening |
-//! | `live/<run>/{meta,agents,ctl}` | put and query | live state of a run |
+//! | `live/<run>/{meta,doors,events}` | put and query | a run, its doors and events, in JSON |
+//! | `live/<run>/{agents,latest}` | put | every tick of a run; its newest, at most twenty a second |
+//! | `live/<run>/{map,ctl}` | query | the map of a run; its ticks, events and agents from a number on |
 //! | `serve/run` | query, served by `socrates serve` | the next run of a driver |
 //! | `drive/<name>/{mission,step}` | query, served by the driver of this name | a robot, or a person, that is driven from outside |
 //! | `drive/<name>/claim/<id>` | presence token | the driver is there, and alone |
@@ -90,13 +92,50 @@ pub fn worker_of(key: &str) -> Option<(Stage, String)> {
     Some((stage.parse().ok()?, instance.to_owned()))
 }
 
-/// Header, events and end of a run.
+/// Everything that is asked of a run: one process serves it.
+#[must_use]
+pub fn live_served(run: &RunId) -> String {
+    format!("live/{}/*", chunk(run.as_str()))
+}
+
+/// What is served of a run under a key of [`live_served`], or of all runs at once.
+#[must_use]
+pub fn live_topic(key: &str) -> Option<&str> {
+    let (_, topic) = key.strip_prefix("live/")?.split_once('/')?;
+    Some(topic)
+}
+
+/// What a run is, how far it is and how it ended.
 #[must_use]
 pub fn live_meta(run: &RunId) -> String {
     format!("live/{}/meta", chunk(run.as_str()))
 }
 
-/// Frames of a run: up to ten ticks to a message, or one part of a tick that is larger than a message.
+/// Events of a run as they happen.
+#[must_use]
+pub fn live_events(run: &RunId) -> String {
+    format!("live/{}/events", chunk(run.as_str()))
+}
+
+/// The doors of a run whenever one opens or shuts.
+#[must_use]
+pub fn live_doors(run: &RunId) -> String {
+    format!("live/{}/doors", chunk(run.as_str()))
+}
+
+/// The map of a run, asked for part by part.
+#[must_use]
+pub fn live_map(run: &RunId) -> String {
+    format!("live/{}/map", chunk(run.as_str()))
+}
+
+/// The newest tick of a run, at most twenty a second whatever its pace: for eyes.
+#[must_use]
+pub fn live_latest(run: &RunId) -> String {
+    format!("live/{}/latest", chunk(run.as_str()))
+}
+
+/// Every tick of a run: up to ten to a message, or one part of a tick that is larger than a message.
 #[must_use]
 pub fn live_agents(run: &RunId) -> String {
     format!("live/{}/agents", chunk(run.as_str()))
@@ -218,6 +257,14 @@ pub(crate) fn checked(key: &str) -> Result<Vec<&str>, LinkError> {
 /// [`LinkError::BadKey`] when either is not well formed.
 pub fn covers(expression: &str, key: &str) -> Result<bool, LinkError> {
     Ok(meet(&checked(expression)?, &checked(key)?))
+}
+
+/// Whether a key exists that falls under both expressions.
+///
+/// # Errors
+/// [`LinkError::BadKey`] when either is not well formed.
+pub(crate) fn meets(a: &str, b: &str) -> Result<bool, LinkError> {
+    Ok(meet(&checked(a)?, &checked(b)?))
 }
 
 /// Whether a key exists that falls under both.

@@ -17,7 +17,7 @@ mod error;
 pub mod keys;
 
 mod envelope;
-pub use envelope::{Envelope, GRANTS_VERSION, MIN_VERSION, VERSION, decode, encode};
+pub use envelope::{Envelope, GRANTS_VERSION, MIN_VERSION, VERSION, decode, encode, wall_ms};
 
 mod bus;
 mod mailbox;

@@ -10,7 +10,7 @@ use tokio::sync::oneshot;
 use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
 use crate::envelope::fits;
 use crate::error::LinkError;
-use crate::keys::{checked, covers};
+use crate::keys::{checked, covers, meets};
 use crate::mailbox::Mailbox;
 
 /// Room of a served key and of a presence watch.
@@ -169,6 +169,39 @@ impl Bus for MemoryBus {
             Ok(Err(_dropped)) => Err(LinkError::NoReply { key: key.to_owned() }),
             Err(_elapsed) => Err(LinkError::Timeout { key: key.to_owned(), after: timeout }),
         }
+    }
+
+    async fn query_all(
+        &self,
+        expression: &str,
+        body: Vec<u8>,
+        most: usize,
+        timeout: Duration,
+    ) -> Result<Vec<Vec<u8>>, LinkError> {
+        self.hub.check(expression)?;
+        let body = fits(expression, body)?;
+        let servers: Vec<Mailbox<Ask>> = {
+            let tables = self.hub.tables();
+            let asked = tables.servers.iter().filter(|entry| meets(&entry.key, expression).unwrap_or(false));
+            asked.take(most).map(|entry| entry.what.clone()).collect()
+        };
+        let mut replies = Vec::new();
+        for server in servers {
+            let (back, reply) = oneshot::channel();
+            replies.push(reply);
+            let ask = Ask::new(expression.to_owned(), body.clone(), Box::new(Back(back)));
+            if tokio::time::timeout(timeout, server.push_waiting(ask)).await.is_err() {
+                break;
+            }
+        }
+        let until = tokio::time::Instant::now() + timeout;
+        let mut found = Vec::new();
+        for reply in replies {
+            if let Ok(Ok(bytes)) = tokio::time::timeout_at(until, reply).await {
+                found.push(bytes);
+            }
+        }
+        Ok(found)
     }
 
     async fn serve(&self, key: &str) -> Result<Serving, LinkError> {

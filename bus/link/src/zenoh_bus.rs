@@ -196,6 +196,44 @@ impl Bus for ZenohBus {
         }
     }
 
+    async fn query_all(
+        &self,
+        expression: &str,
+        body: Vec<u8>,
+        most: usize,
+        timeout: Duration,
+    ) -> Result<Vec<Vec<u8>>, LinkError> {
+        let full = self.full(expression)?;
+        let body = fits(expression, body)?;
+        let (heard, mut replies) = tokio::sync::mpsc::channel(most.max(1));
+        let get = self
+            .session
+            .get(full)
+            .payload(body)
+            .target(QueryTarget::All)
+            .consolidation(ConsolidationMode::None)
+            .congestion_control(CongestionControl::Block)
+            .express(true)
+            .timeout(timeout)
+            // More than asked for are left out.
+            .callback(move |reply| drop(heard.try_send(reply)));
+        get.await.map_err(|why| transport(&format!("asking `{expression}`"), &why.to_string()))?;
+        let mut found = Vec::new();
+        let gathered = async {
+            while found.len() < most
+                && let Some(reply) = replies.recv().await
+            {
+                // An error is somebody who did not answer in time.
+                if let Ok(sample) = reply.into_result() {
+                    found.push(bytes(sample.payload()));
+                }
+            }
+        };
+        // The transport has the same limit; what came until then counts.
+        drop(tokio::time::timeout(timeout.saturating_add(Duration::from_millis(250)), gathered).await);
+        Ok(found)
+    }
+
     async fn serve(&self, key: &str) -> Result<Serving, LinkError> {
         let full = self.full(key)?;
         let mailbox = Mailbox::new(DEPTH);

@@ -208,7 +208,30 @@ async fn a_typed_call_comes_back_and_a_refusal_is_permanent(pair: &Pair) {
     server.abort();
 }
 
+async fn everybody_under_an_expression_is_asked_and_one_serves_all_its_keys(pair: &Pair) {
+    assert!(pair.a.query_all("live/*/meta", vec![], 8, SOON).await.unwrap().is_empty(), "nobody is no error");
+    let mut servers = Vec::new();
+    for (bus, name) in [(&pair.a, "r1"), (&pair.b, "r2")] {
+        let mut serving = bus.serve(&format!("live/{name}/*")).await.unwrap();
+        servers.push(tokio::spawn(async move {
+            while let Some(ask) = serving.next().await {
+                let told = format!("{name} {}", ask.key().rsplit('/').next().unwrap());
+                ask.reply(told.into_bytes()).await.unwrap();
+            }
+        }));
+    }
+    ask_until_served(&*pair.a, "live/r2/map", &[]).await;
+    ask_until_served(&*pair.b, "live/r1/map", &[]).await;
+    let mut all = pair.a.query_all("live/*/meta", vec![], 8, SOON).await.unwrap();
+    all.sort();
+    assert_eq!(all, [b"r1 meta".to_vec(), b"r2 meta".to_vec()]);
+    assert_eq!(pair.b.query_all("live/*/meta", vec![], 1, SOON).await.unwrap().len(), 1, "at most so many");
+    assert_eq!(pair.b.query("live/r1/doors", vec![], SOON).await.unwrap(), b"r1 doors");
+    servers.iter().for_each(tokio::task::JoinHandle::abort);
+}
+
 async fn every_promise(pair: &Pair) {
+    everybody_under_an_expression_is_asked_and_one_serves_all_its_keys(pair).await;
     a_query_is_answered(pair).await;
     nobody_serving_is_no_reply_and_transient(pair).await;
     a_dropped_ask_is_no_reply(pair).await;
@@ -312,6 +335,90 @@ mod over_zenoh {
             server.abort();
             other.close().await;
             router.close().await;
+        })
+        .await;
+    }
+
+    /// A router with the shipped rules, for which processes come by a socket and viewers by TCP.
+    async fn ruled_router(socket: &str, tcp: &str) -> zenoh::Session {
+        let rules = include_str!("../../../deploy/zenoh/access.json5");
+        let rules = rules.replace(r#"usernames: ["orchestrator", "worker"]"#, r#"link_protocols: ["unixsock-stream"]"#);
+        let rules = rules.replace(r#"usernames: ["viewer"]"#, r#"link_protocols: ["tcp"]"#);
+        let mut config = zenoh::Config::from_json5(&rules).unwrap();
+        for (key, value) in [
+            ("mode", "\"router\"".to_owned()),
+            ("listen/endpoints", format!("[{socket:?}, {tcp:?}]")),
+            ("scouting/multicast/enabled", "false".to_owned()),
+            ("scouting/gossip/enabled", "false".to_owned()),
+        ] {
+            config.insert_json5(key, &value).unwrap();
+        }
+        zenoh::open(config).await.unwrap()
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn a_viewer_by_the_shipped_rules_reads_live_keys_and_nothing_else() {
+        guarded(async {
+            let folder = tempfile::tempdir().unwrap();
+            let socket = format!("unixsock-stream/{}", folder.path().join("bus").display());
+            let tcp = format!("tcp/127.0.0.1:{}", free_port());
+            let router = ruled_router(&socket, &tcp).await;
+            let open = |at: &str, name: &str| ZenohBus::open(ZenohConfig::new(Mode::Client, "t", name).connect(at));
+            let (run, other, viewer) = (
+                open(&socket, "run").await.unwrap(),
+                open(&socket, "other").await.unwrap(),
+                open(&tcp, "viewer").await.unwrap(),
+            );
+            let mut asked = run.serve("live/r1/*").await.unwrap();
+            let server = tokio::spawn(async move {
+                while let Some(ask) = asked.next().await {
+                    ask.reply(vec![1]).await.unwrap();
+                }
+            });
+            // What a viewer may: ask a run, and hear it.
+            assert_eq!(ask_until_served(&viewer, "live/r1/meta", &[]).await, [1]);
+            let mut hears = viewer.subscribe("live/**", 64, Overflow::DropOldest).await.unwrap();
+            let heard = async {
+                loop {
+                    run.publish("live/r1/latest", vec![2], Qos::Hint).await.unwrap();
+                    if let Ok(Some((key, _))) = tokio::time::timeout(Duration::from_millis(50), hears.next()).await {
+                        return key;
+                    }
+                }
+            };
+            assert_eq!(heard.await, "live/r1/latest");
+            // What it may not: tell, serve, be present, ask for work, hear anything else. A process that may is the measure.
+            let mut others = other.subscribe("**", 64, Overflow::DropOldest).await.unwrap();
+            let mut presence = other.watch_alive("**").await.unwrap();
+            let mut works = run.serve("rpc/acquire").await.unwrap();
+            let worker = tokio::spawn(async move { works.next().await.unwrap().reply(vec![3]).await });
+            assert!(viewer.query("rpc/acquire", vec![], SOON).await.is_err(), "work was handed to a viewer");
+            let mut nosy = viewer.subscribe("hint/**", 64, Overflow::DropOldest).await.unwrap();
+            drop(viewer.publish("live/r1/latest", vec![9], Qos::Control).await);
+            drop(viewer.publish("cmd/worker", vec![9], Qos::Control).await);
+            let _token = viewer.declare_alive("live/worker/simulation/fake").await;
+            let _serving = viewer.serve("rpc/hello").await;
+            assert!(other.query("rpc/hello", vec![], SOON).await.is_err(), "a viewer was asked");
+            loop {
+                run.publish("hint/simulation", vec![4], Qos::Control).await.unwrap();
+                match tokio::time::timeout(Duration::from_millis(50), others.next()).await {
+                    Ok(Some((key, body))) if key == "hint/simulation" => break assert_eq!(body, [4]),
+                    Ok(Some((key, body))) => assert_ne!(body, [9], "a viewer told `{key}`"),
+                    Ok(None) => panic!("the bus is closed"),
+                    Err(_elapsed) => {}
+                }
+            }
+            assert!(nosy.try_next().is_none(), "a viewer heard a hint");
+            let seen = tokio::time::timeout(Duration::from_millis(200), presence.next()).await;
+            assert!(seen.is_err(), "a viewer is present");
+            // The work is there for those who may.
+            assert_eq!(ask_until_served(&other, "rpc/acquire", &[]).await, [3]);
+            worker.await.unwrap().unwrap();
+            server.abort();
+            for bus in [&run, &other, &viewer] {
+                bus.close().await;
+            }
+            router.close().await.unwrap();
         })
         .await;
     }

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::drive::Command;
+use crate::geometry::Pose;
+use crate::grid::{Cell, Grid};
 use crate::hash::Digest;
 use crate::ids::{AgentId, HumanId, RunId};
 use crate::lockstep::VERSION;
@@ -98,6 +100,61 @@ pub struct MissionMap {
     pub yaw: f64,
     /// Digest of the cells: a driver that has them already need not ask for them again.
     pub digest: Digest,
+}
+
+impl MissionMap {
+    /// The facts of a map; `cells` are its [`map_cells`].
+    #[must_use]
+    pub fn of(grid: &Grid, cells: &[u8]) -> Self {
+        Self {
+            width: grid.width,
+            height: grid.height,
+            resolution_m: grid.resolution_m,
+            origin: [grid.origin.x, grid.origin.y],
+            yaw: grid.origin.yaw,
+            digest: Digest::of(cells),
+        }
+    }
+}
+
+/// Cells of a map as they are told, row by row from the lower left: 0 free, 100 occupied, 255 unknown.
+#[must_use]
+pub fn map_cells(grid: &Grid) -> Vec<u8> {
+    let told = |cell: &Cell| match cell {
+        Cell::Free => 0,
+        Cell::Occupied => 100,
+        Cell::Unknown => 255,
+    };
+    // The grid has its upper row first.
+    grid.cells.chunks(grid.width.max(1)).rev().flatten().map(told).collect()
+}
+
+/// The map that these facts and [`map_cells`] tell; unknown cells where there are none, a single one without facts.
+#[must_use]
+pub fn grid_of(map: Option<&MissionMap>, cells: &[u8]) -> Grid {
+    let (width, height) = map.map_or((1, 1), |map| (map.width.max(1), map.height.max(1)));
+    let cell = |told: &u8| match told {
+        0 => Cell::Free,
+        100 => Cell::Occupied,
+        _ => Cell::Unknown,
+    };
+    let told = cells.chunks_exact(width).take(height);
+    let mut rows: Vec<Vec<Cell>> = told.map(|row| row.iter().map(cell).collect()).collect();
+    rows.resize(height, vec![Cell::Unknown; width]);
+    Grid {
+        width,
+        height,
+        resolution_m: map.map_or(1.0, |map| map.resolution_m),
+        origin: map.map_or_else(
+            || Pose::new(0.0, 0.0, 0.0),
+            |map| {
+                let [x, y] = map.origin;
+                Pose::new(x, y, map.yaw)
+            },
+        ),
+        // The grid has its upper row first.
+        cells: rows.into_iter().rev().flatten().collect(),
+    }
 }
 
 /// What the driver answers to its mission. What it leaves out has the default.

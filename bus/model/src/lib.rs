@@ -40,6 +40,7 @@ pub mod rule;
 pub mod drive;
 pub mod driver;
 mod leaf;
+pub mod live;
 pub mod lockstep;
 pub mod recording;
 pub mod report;

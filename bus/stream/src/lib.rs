@@ -44,13 +44,17 @@ mod live;
 #[cfg(feature = "mcap")]
 mod part;
 #[cfg(feature = "mcap")]
+mod past;
+#[cfg(feature = "mcap")]
 mod shelf;
 #[cfg(feature = "mcap")]
 mod watch;
 #[cfg(feature = "mcap")]
 pub use live::{Linger, LiveSink};
 #[cfg(feature = "mcap")]
-pub use watch::{Sight, Watch};
+pub use past::Past;
+#[cfg(feature = "mcap")]
+pub use watch::{Sharpness, Sight, Watch};
 
 pub mod csv;
 #[cfg(feature = "mcap")]

@@ -4,22 +4,27 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use socrates_link::{Ask, Bus, Envelope, LinkError, Publish, Qos, Serving, encode, keys};
-use socrates_model::RunId;
+use serde::Serialize;
+use socrates_link::{Ask, Bus, LinkError, Publish, Qos, Serving, keys};
+use socrates_model::live::{LiveEnd, LiveScene};
 use socrates_model::recording::{AgentState, Event, RecordingHeader};
+use socrates_model::{Grid, RunId};
 use tokio::sync::Notify;
 use tokio::task::JoinHandle;
+use tokio::time::Instant;
 
 use crate::error::StreamError;
 use crate::mcap::Tape;
 use crate::part;
-use crate::shelf::{Ctl, KIND_CTL, KIND_META, Shelf};
+use crate::shelf::{Ctl, Shelf};
 use crate::sink::FrameSink;
 
 /// Ticks that go out together, where they come that fast.
 const TOGETHER: u64 = 10;
 /// Longest time that a tick waits for others, where they come slowly.
 const GATHER: Duration = Duration::from_millis(50);
+/// Time from one newest tick to the next: eyes see no more, and a run at full speed is hardly held up by telling it.
+const LATEST_EVERY: Duration = Duration::from_millis(48);
 
 /// How long a finished run stays on the bus: for a time, and of those that nobody watches only the last.
 #[derive(Debug, Clone)]
@@ -67,23 +72,29 @@ pub struct LiveSink {
 
 impl LiveSink {
     /// Opens the run's keys. Queries are served before it returns, so that the run can be asked about from tick 0 on. The
-    /// last seconds are kept here; older ticks are read from `tape`, where somebody else records the run.
+    /// last seconds are kept here; older ticks are read from `tape`, where somebody else records the run. Viewers are told the scene,
+    /// and the map on which it is played.
     ///
     /// # Errors
     /// [`StreamError::Link`].
-    pub async fn open(bus: Arc<dyn Bus>, run: &RunId, tape: Tape, linger: &Linger) -> Result<Self, StreamError> {
+    pub async fn open(
+        bus: Arc<dyn Bus>,
+        run: &RunId,
+        (scene, grid): (LiveScene, Option<&Grid>),
+        tape: Tape,
+        linger: &Linger,
+    ) -> Result<Self, StreamError> {
         let failed = |why: LinkError| StreamError::Link { run: run.to_string(), why };
-        let meta = bus.serve(&keys::live_meta(run)).await.map_err(failed)?;
-        let ctl = bus.serve(&keys::live_ctl(run)).await.map_err(failed)?;
-        let (shelf, news) = (Arc::new(Shelf::before(tape)), Arc::new(Notify::new()));
+        let asked = bus.serve(&keys::live_served(run)).await.map_err(failed)?;
+        let (shelf, news) = (Arc::new(Shelf::before(tape, scene, grid)), Arc::new(Notify::new()));
         let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
-        let publisher = Some(tokio::spawn(task.publish(meta, ctl, linger.clone())));
+        let publisher = Some(tokio::spawn(task.publish(asked, linger.clone())));
         Ok(Self { shelf, news, publisher })
     }
 
     /// Waits until the run is on the bus to its end and the linger time is over; a run without an end ends here.
     pub async fn finished(mut self) {
-        self.shelf.end();
+        self.shelf.end(&LiveEnd::default());
         self.news.notify_one();
         if let Some(Err(why)) = match self.publisher.take() {
             Some(publisher) => Some(publisher.await),
@@ -97,7 +108,7 @@ impl LiveSink {
 /// A run that is given up in its midst ends for its watchers too, and its keys go after the linger time.
 impl Drop for LiveSink {
     fn drop(&mut self) {
-        self.shelf.end();
+        self.shelf.end(&LiveEnd::default());
         self.news.notify_one();
     }
 }
@@ -123,8 +134,8 @@ impl FrameSink for LiveSink {
         }
     }
 
-    fn end(&mut self) {
-        self.shelf.end();
+    fn end(&mut self, end: &LiveEnd) {
+        self.shelf.end(end);
         self.news.notify_one();
     }
 }
@@ -137,24 +148,20 @@ struct Publisher {
 }
 
 impl Publisher {
-    async fn publish(self, mut meta: Serving, mut ctl: Serving, linger: Linger) {
+    async fn publish(self, mut asked: Serving, linger: Linger) {
         let served = async {
-            loop {
-                let answered = tokio::select! {
-                    Some(ask) = meta.next() => self.answer_meta(ask).await,
-                    Some(ask) = ctl.next() => self.answer_ctl(ask).await,
-                    else => return,
-                };
-                if let Err(why) = answered {
+            while let Some(ask) = asked.next().await {
+                if let Err(why) = self.answer(ask).await {
                     tracing::debug!(run = %self.run, %why, "an answer about a run did not go out");
                 }
             }
         };
         let told = async {
-            if let Err(why) = self.tell().await {
+            let watched = self.tell().await.unwrap_or_else(|why| {
                 tracing::warn!(run = %self.run, %why, "the live stream ended early; the run goes on");
-            }
-            if self.shelf.is_heard() {
+                false
+            });
+            if watched {
                 tokio::time::sleep(linger.time).await;
             } else {
                 linger.unwatched().await;
@@ -166,35 +173,55 @@ impl Publisher {
         }
     }
 
-    /// Publishes what is new until the run is over.
-    async fn tell(&self) -> Result<(), LinkError> {
-        let meta = self.bus.publisher(&keys::live_meta(&self.run), Qos::Hint).await?;
-        let agents = self.bus.publisher(&keys::live_agents(&self.run), Qos::Stream).await?;
-        let (mut announced, mut told_ticks, mut told_events) = (false, 0_u64, 0_u64);
+    /// Publishes what is new until the run is over; gives whether anybody watches it then.
+    async fn tell(&self) -> Result<bool, LinkError> {
+        let topics = Topics::declare(&*self.bus, &self.run).await?;
+        let mut told = Told::default();
         loop {
-            self.shelf.hears(agents.is_heard());
-            let (ticks, events, ended) = self.shelf.standing();
-            if !announced && self.shelf.meta().is_some() {
-                self.say(&*meta).await?;
-                announced = true;
+            self.shelf.hears(topics.agents.is_heard());
+            let now = self.shelf.standing();
+            if now.announced && !told.announced {
+                told.announced = true;
+                self.say(&*topics.meta, &self.shelf.meta()).await?;
+                self.say(&*topics.doors, &self.shelf.doors()).await?;
             }
-            self.tell_ticks(&*agents, told_ticks, ticks).await?;
+            self.tell_ticks(&*topics.agents, told.ticks, now.ticks).await?;
             // What nobody hears is not sent: whoever comes later fetches it.
-            told_ticks = ticks;
-            if ended && !announced {
-                return Ok(());
+            told.ticks = now.ticks;
+            self.tell_events(&*topics.events, told.events, now.events).await?;
+            told.events = now.events;
+            if told.turns < now.turns {
+                told.turns = now.turns;
+                self.say(&*topics.doors, &self.shelf.doors()).await?;
             }
-            if told_events < events || ended {
-                // Says how many there are; whoever wants them fetches them.
-                self.say(&*meta).await?;
-                told_events = events;
+            let is_due = told.latest_at.is_none_or(|at| at.elapsed() >= LATEST_EVERY);
+            if told.latest < now.ticks && (is_due || now.ended) && topics.latest.is_heard() {
+                (told.latest, told.latest_at) = (now.ticks, Some(Instant::now()));
+                for part in self.shelf.latest() {
+                    topics.latest.put(part).await?;
+                }
             }
-            if ended {
-                return if agents.is_heard() { agents.put(part::over(ticks)).await } else { Ok(()) };
+            if now.ended {
+                return self.tell_end(&topics, now.announced, now.ticks).await;
             }
             // Whoever watches a slow run waits no longer than this for its ticks.
             drop(tokio::time::timeout(GATHER, self.news.notified()).await);
         }
+    }
+
+    /// Tells that the run is over, on every key that somebody may be waiting at.
+    async fn tell_end(&self, topics: &Topics, announced: bool, ticks: u64) -> Result<bool, LinkError> {
+        let watched = topics.agents.is_heard() || topics.latest.is_heard();
+        if !announced {
+            return Ok(watched);
+        }
+        self.say(&*topics.meta, &self.shelf.meta()).await?;
+        for frames in [&topics.agents, &topics.latest] {
+            if frames.is_heard() {
+                frames.put(part::over(ticks)).await?;
+            }
+        }
+        Ok(watched)
     }
 
     /// Publishes the ticks from one on, as long as anybody listens.
@@ -213,36 +240,95 @@ impl Publisher {
         Ok(())
     }
 
-    /// Tells how the run stands, where anybody listens.
-    async fn say(&self, meta: &dyn Publish) -> Result<(), LinkError> {
-        if meta.is_heard() { meta.put(self.meta_message()?).await } else { Ok(()) }
-    }
-
-    fn meta_message(&self) -> Result<Vec<u8>, LinkError> {
-        match self.shelf.meta() {
-            // A watcher of version 1 would take the messages of the frame key for something else.
-            Some(meta) => encode(&Envelope::fresh(KIND_META, self.bus.name(), 0, meta).for_readers_of(part::VERSION)),
-            None => Err(LinkError::NoReply { key: keys::live_meta(&self.run) }),
+    /// Publishes the events from one on, as long as anybody listens.
+    async fn tell_events(&self, to: &dyn Publish, mut from: u64, events: u64) -> Result<(), LinkError> {
+        while from < events && to.is_heard() {
+            let some = self.shelf.events(from);
+            // One that fits no message is asked for as well in vain.
+            from += (some.events.len() as u64).max(1);
+            self.say(to, &some).await?;
         }
+        Ok(())
     }
 
-    async fn answer_meta(&self, ask: Ask) -> Result<(), LinkError> {
-        // Before the announcement there is nothing to say: the asker hears no reply and asks again.
-        ask.reply(self.meta_message()?).await
+    /// Tells something in JSON, where anybody listens.
+    async fn say<T: Serialize + Sync>(&self, to: &dyn Publish, what: &T) -> Result<(), LinkError> {
+        if to.is_heard() { to.put(self.json(what)?).await } else { Ok(()) }
+    }
+
+    fn json<T: Serialize>(&self, what: &T) -> Result<Vec<u8>, LinkError> {
+        serde_json::to_vec(what).map_err(|why| LinkError::Encode { kind: self.run.to_string(), why: why.to_string() })
+    }
+
+    async fn answer(&self, ask: Ask) -> Result<(), LinkError> {
+        match keys::live_topic(ask.key()) {
+            // Before the announcement there is nothing to say: the asker hears no reply and asks again.
+            Some("meta") => match self.shelf.meta() {
+                Some(meta) => ask.reply(self.json(&meta)?).await,
+                None => Ok(()),
+            },
+            Some("doors") => ask.reply(self.json(&self.shelf.doors())?).await,
+            Some("map") => {
+                let first = ask.body().try_into().map_or(0, u64::from_le_bytes);
+                ask.reply(self.shelf.map(first).unwrap_or_default()).await
+            }
+            Some("events") => {
+                let from = ask.body().try_into().map_or(0, u64::from_le_bytes);
+                ask.reply(self.json(&self.shelf.events(from))?).await
+            }
+            Some("ctl") => self.answer_ctl(ask).await,
+            // Whatever else is under the run is not asked for.
+            Some(_) | None => Ok(()),
+        }
     }
 
     async fn answer_ctl(&self, ask: Ask) -> Result<(), LinkError> {
-        let name = self.bus.name();
-        match ask.read::<Ctl>(KIND_CTL) {
-            Ok(envelope) => match envelope.body {
-                Ctl::Frames { from, to, part } => {
-                    let message = self.shelf.message(from, to, part).map(|(message, _)| message);
-                    ask.reply(message.unwrap_or_default()).await
-                }
-                Ctl::Events { from } => ask.answer(KIND_CTL, name, 0, &self.shelf.events(from)).await,
-                Ctl::Agents { from } => ask.answer(KIND_CTL, name, 0, &self.shelf.agents(from)).await,
-            },
-            Err(why) => ask.refuse(name, 0, &why.to_string()).await,
+        match serde_json::from_slice(ask.body()) {
+            Ok(Ctl::Frames { from, to, part }) => {
+                let message = self.shelf.message(from, to, part).map(|(message, _)| message);
+                ask.reply(message.unwrap_or_default()).await
+            }
+            Ok(Ctl::Events { from }) => ask.reply(self.json(&self.shelf.events(from))?).await,
+            Ok(Ctl::Agents { from }) => ask.reply(self.json(&self.shelf.agents(from))?).await,
+            Err(why) => {
+                let error = serde_json::json!({
+                    "error": format!("the question about `{}` cannot be read: {why}", self.run),
+                    "hint": "allowed: {\"frames\": {\"from\": 0, \"to\": 9}}, {\"events\": {\"from\": 0}}, {\"agents\": {\"from\": 0}}",
+                });
+                ask.reply(self.json(&error)?).await
+            }
         }
+    }
+}
+
+/// What was told so far.
+#[derive(Default)]
+struct Told {
+    announced: bool,
+    ticks: u64,
+    events: u64,
+    turns: u64,
+    latest: u64,
+    latest_at: Option<Instant>,
+}
+
+/// The keys of a run that are published to.
+struct Topics {
+    meta: Box<dyn Publish>,
+    agents: Box<dyn Publish>,
+    latest: Box<dyn Publish>,
+    events: Box<dyn Publish>,
+    doors: Box<dyn Publish>,
+}
+
+impl Topics {
+    async fn declare(bus: &dyn Bus, run: &RunId) -> Result<Self, LinkError> {
+        Ok(Self {
+            meta: bus.publisher(&keys::live_meta(run), Qos::Hint).await?,
+            agents: bus.publisher(&keys::live_agents(run), Qos::Stream).await?,
+            latest: bus.publisher(&keys::live_latest(run), Qos::Stream).await?,
+            events: bus.publisher(&keys::live_events(run), Qos::Hint).await?,
+            doors: bus.publisher(&keys::live_doors(run), Qos::Hint).await?,
+        })
     }
 }

@@ -6,7 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
-use socrates_model::recording::{AGENT_STATE_BYTES, AgentInfo, AgentState, Event, RecordingHeader};
+use socrates_model::Grid;
+use socrates_model::driver::map_cells;
+use socrates_model::live::{LiveDoor, LiveDoors, LiveEnd, LiveEvents, LiveMeta, LiveScene, VERSION};
+use socrates_model::lockstep::{MAP_PART_CELLS, map_bytes};
+use socrates_model::recording::{AGENT_STATE_BYTES, AgentInfo, AgentState, Event, EventKind, RecordingHeader};
 
 use crate::mcap::Tape;
 use crate::part;
@@ -17,31 +21,7 @@ const PART_BYTES: usize = 48 * 1024;
 const RING_TICKS: u64 = 2_000;
 /// Bytes of ticks that are kept: more than a chunk of the recording, so that what is not in it yet is here.
 const RING_BYTES: usize = 8 * 1024 * 1024;
-/// Kind of a message on the meta key and of its queries.
-pub(crate) const KIND_META: &str = "live_meta";
-/// Kind of a query on the ctl key.
-pub(crate) const KIND_CTL: &str = "live_ctl";
-
-/// What the meta key says: header and how far the run is.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Meta {
-    /// Version of the messages on the frame key.
-    #[serde(default)]
-    pub(crate) version: u32,
-    /// Header, with as many agents as fit into a message.
-    pub(crate) header: RecordingHeader,
-    /// How many agents there are; the others are asked for.
-    #[serde(default)]
-    pub(crate) agents: u64,
-    /// Ticks so far.
-    pub(crate) ticks: u64,
-    /// Events so far.
-    pub(crate) events: u64,
-    /// Whether the run is over.
-    pub(crate) ended: bool,
-}
-
-/// What the ctl key is asked. Frames come back as a message of the frame key, all else as a message.
+/// What the ctl key is asked, in JSON. Frames come back as a message of the frame key, all else as JSON.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Ctl {
@@ -67,6 +47,21 @@ pub(crate) enum Ctl {
     },
 }
 
+/// How a run stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Standing {
+    /// Whether it was announced.
+    pub(crate) announced: bool,
+    /// Ticks so far.
+    pub(crate) ticks: u64,
+    /// Events so far.
+    pub(crate) events: u64,
+    /// How often a door has opened or shut.
+    pub(crate) turns: u64,
+    /// Whether it is over.
+    pub(crate) ended: bool,
+}
+
 /// The frames.
 #[derive(Default)]
 pub(crate) struct Shelf {
@@ -76,17 +71,24 @@ pub(crate) struct Shelf {
     /// The ticks that were read from it last, for the questions that follow.
     read: Mutex<Vec<Vec<u8>>>,
     heard: AtomicBool,
+    /// Cells of the map, as they are told.
+    cells: Vec<u8>,
 }
 
 #[derive(Default)]
 struct Rows {
+    scene: LiveScene,
+    /// Doors as they stand now.
+    doors: Vec<LiveDoor>,
     header: Option<RecordingHeader>,
     /// Bytes of the ticks from `first` on.
     ring: VecDeque<u8>,
     first: u64,
     ticks: u64,
     events: Vec<Event>,
-    ended: bool,
+    /// How often a door has opened or shut.
+    turns: u64,
+    ended: Option<LiveEnd>,
 }
 
 impl Rows {
@@ -96,9 +98,10 @@ impl Rows {
 }
 
 impl Shelf {
-    /// A shelf whose older ticks are on this tape.
-    pub(crate) fn before(tape: Tape) -> Self {
-        Self { tape, ..Self::default() }
+    /// A shelf for a run of this scene on this map, whose older ticks are on this tape.
+    pub(crate) fn before(tape: Tape, scene: LiveScene, grid: Option<&Grid>) -> Self {
+        let rows = Mutex::new(Rows { doors: scene.doors.clone(), scene, ..Rows::default() });
+        Self { tape, rows, cells: grid.map(map_cells).unwrap_or_default(), ..Self::default() }
     }
 
     fn rows(&self) -> MutexGuard<'_, Rows> {
@@ -115,7 +118,9 @@ impl Shelf {
     }
 
     pub(crate) fn announce(&self, header: &RecordingHeader) {
-        *self.rows() = Rows { header: Some(header.clone()), ..Rows::default() };
+        let mut rows = self.rows();
+        let scene = std::mem::take(&mut rows.scene);
+        *rows = Rows { header: Some(header.clone()), doors: scene.doors.clone(), scene, ..Rows::default() };
     }
 
     /// Takes the next tick and lets go of what is older than the ring.
@@ -131,14 +136,21 @@ impl Shelf {
     }
 
     pub(crate) fn event(&self, event: &Event) {
-        self.rows().events.push(event.clone());
+        let mut rows = self.rows();
+        if let EventKind::Door { door, open } = &event.kind
+            && let Some(told) = rows.doors.iter_mut().find(|told| told.door.id == *door)
+        {
+            told.open = *open;
+            rows.turns += 1;
+        }
+        rows.events.push(event.clone());
     }
 
-    /// The run is over. What is in the recording is not kept here as well.
-    pub(crate) fn end(&self) {
+    /// The run is over; what was said of its end first stands. What is in the recording is not kept here as well.
+    pub(crate) fn end(&self, end: &LiveEnd) {
         let recorded = self.tape.ticks();
         let mut rows = self.rows();
-        rows.ended = true;
+        rows.ended.get_or_insert_with(|| end.clone());
         if recorded >= rows.ticks {
             rows.first = rows.ticks;
             rows.ring = VecDeque::new();
@@ -146,24 +158,45 @@ impl Shelf {
     }
 
     /// What the meta key says now; `None` before the announcement.
-    pub(crate) fn meta(&self) -> Option<Meta> {
+    pub(crate) fn meta(&self) -> Option<LiveMeta> {
         let rows = self.rows();
         let header = rows.header.as_ref()?;
-        let meta = Meta {
-            version: part::VERSION,
+        let meta = LiveMeta {
+            socrates: "run".to_owned(),
+            version: VERSION,
             header: RecordingHeader { agents: fitting(&header.agents, 0), ..header.clone() },
             agents: header.agents.len() as u64,
+            scene: rows.scene.clone(),
             ticks: rows.ticks,
             events: rows.events.len() as u64,
-            ended: rows.ended,
+            ended: rows.ended.clone(),
         };
         Some(meta)
     }
 
-    /// Ticks so far, events so far, whether the run is over.
-    pub(crate) fn standing(&self) -> (u64, u64, bool) {
+    /// How the run stands.
+    pub(crate) fn standing(&self) -> Standing {
         let rows = self.rows();
-        (rows.ticks, rows.events.len() as u64, rows.ended)
+        Standing {
+            announced: rows.header.is_some(),
+            ticks: rows.ticks,
+            events: rows.events.len() as u64,
+            turns: rows.turns,
+            ended: rows.ended.is_some(),
+        }
+    }
+
+    /// The doors as they stand now.
+    pub(crate) fn doors(&self) -> LiveDoors {
+        let rows = self.rows();
+        LiveDoors { tick: rows.ticks, doors: rows.doors.clone() }
+    }
+
+    /// The part of the map that begins with this cell; `None` where it has no such cell.
+    pub(crate) fn map(&self, first: u64) -> Option<Vec<u8>> {
+        let part = self.cells.get(usize::try_from(first).ok()?..)?;
+        let part = part.get(..part.len().min(MAP_PART_CELLS))?;
+        (!part.is_empty()).then(|| map_bytes(0, first, self.cells.len() as u64, part))
     }
 
     /// Agents of the header from a number on, as many as fit a message.
@@ -172,8 +205,21 @@ impl Shelf {
     }
 
     /// Events from a number on, as many as fit a message.
-    pub(crate) fn events(&self, from: u64) -> Vec<Event> {
-        fitting(&self.rows().events, from)
+    pub(crate) fn events(&self, from: u64) -> LiveEvents {
+        LiveEvents { first: from, events: fitting(&self.rows().events, from) }
+    }
+
+    /// The newest tick as one message or several; none before the first.
+    pub(crate) fn latest(&self) -> Vec<Vec<u8>> {
+        let Some(tick) = self.rows().ticks.checked_sub(1) else { return Vec::new() };
+        let mut parts = Vec::new();
+        while let Some((part, ended)) = self.message(tick, tick, u32::try_from(parts.len()).unwrap_or(u32::MAX)) {
+            parts.push(part);
+            if ended > 0 {
+                break;
+            }
+        }
+        parts
     }
 
     /// The message with the ticks from one to another, as many as fit, or with one part of the first; and how many whole
@@ -249,7 +295,7 @@ mod tests {
         }
         let recording = csv::read_tracks(&text).unwrap();
         let tape = Tape::default();
-        let shelf = Shelf::before(tape.clone());
+        let shelf = Shelf::before(tape.clone(), LiveScene::default(), None);
         let mut writer = tape.record(&recording.header, None).unwrap();
         shelf.announce(&recording.header);
         for tick in 0..recording.ticks() {

@@ -12,6 +12,7 @@ use iceoryx2::prelude::{
 };
 use iceoryx2::service::port_factory::PortFactory as _;
 use socrates_model::RunId;
+use socrates_model::live::LiveEnd;
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingHeader};
 
 use crate::corner::ShmConfig;
@@ -286,7 +287,7 @@ impl FrameSink for ShmSink {
 
     fn event(&mut self, _event: &Event) {}
 
-    fn end(&mut self) {}
+    fn end(&mut self, _end: &LiveEnd) {}
 }
 
 /// Whether so many bytes are free in shared memory: over-committing it shows as a signal, not as an error.
@@ -336,11 +337,18 @@ impl ShmWatch {
     /// # Errors
     /// [`StreamError::Shm`].
     pub fn poll(&mut self) -> Result<Option<Vec<AgentState>>, StreamError> {
+        self.look(|states| states.iter().map(AgentState::from).collect())
+    }
+
+    /// The same without a copy: `with` reads the tick where the simulation wrote it, in the header's order.
+    ///
+    /// # Errors
+    /// [`StreamError::Shm`].
+    pub fn look<T>(&mut self, with: impl FnOnce(&[ShmState]) -> T) -> Result<Option<T>, StreamError> {
         while let Some(sample) = self.port.receive().map_err(|why| self.corner.failed("receiving", &why))? {
-            let states: Vec<AgentState> = sample.payload().iter().map(AgentState::from).collect();
-            let Some(first) = states.first() else { continue };
+            let Some(first) = sample.payload().first() else { continue };
             if self.order.saw(first.tick) != Seen::Old {
-                return Ok(Some(states));
+                return Ok(Some(with(sample.payload())));
             }
         }
         Ok(None)

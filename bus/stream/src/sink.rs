@@ -1,5 +1,6 @@
 //! Where the simulation puts its frames.
 
+use socrates_model::live::LiveEnd;
 use socrates_model::recording::{AgentState, Event, Recording, RecordingHeader};
 
 /// Takes a run tick by tick. Synchronous and quick: nothing here waits for a viewer.
@@ -12,8 +13,8 @@ pub trait FrameSink: Send {
     fn tick(&mut self, tick: u64, states: &[AgentState]);
     /// Something happened.
     fn event(&mut self, event: &Event);
-    /// The run is over.
-    fn end(&mut self);
+    /// The run is over, and is recorded as told.
+    fn end(&mut self, end: &LiveEnd);
 }
 
 /// Takes everything and keeps nothing.
@@ -24,7 +25,7 @@ impl FrameSink for NoSink {
     fn announce(&mut self, _header: &RecordingHeader) {}
     fn tick(&mut self, _tick: u64, _states: &[AgentState]) {}
     fn event(&mut self, _event: &Event) {}
-    fn end(&mut self) {}
+    fn end(&mut self, _end: &LiveEnd) {}
 }
 
 /// Hands everything to several sinks in order.
@@ -57,8 +58,8 @@ impl FrameSink for Fanout {
         self.0.iter_mut().for_each(|sink| sink.event(event));
     }
 
-    fn end(&mut self) {
-        self.0.iter_mut().for_each(|sink| sink.end());
+    fn end(&mut self, end: &LiveEnd) {
+        self.0.iter_mut().for_each(|sink| sink.end(end));
     }
 }
 
@@ -99,5 +100,5 @@ impl FrameSink for Recorder {
         }
     }
 
-    fn end(&mut self) {}
+    fn end(&mut self, _end: &LiveEnd) {}
 }

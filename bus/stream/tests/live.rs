@@ -6,11 +6,13 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Bus, Envelope, MemoryBus, Overflow, Qos, decode, encode, keys};
+use socrates_link::{Bus, MemoryBus, Overflow, Qos, keys};
+use socrates_model::driver::{MissionDoor, MissionMap, map_cells};
+use socrates_model::live::{self, LiveDoor, LiveDoors, LiveEnd, LiveEvents, LiveMeta, LivePlace, LiveScene};
 use socrates_model::recording::{AgentInfo, AgentState, Event, EventKind, Recording};
-use socrates_model::{AgentId, RunId, SimTime};
+use socrates_model::{AgentId, Cell, Grid, Pose, RunId, SimTime};
 use socrates_stream::mcap::Tape;
-use socrates_stream::{FrameSink as _, Linger, LiveSink, Sight, TickRange, Watch, csv};
+use socrates_stream::{FrameSink as _, Linger, LiveSink, Sharpness, Sight, TickRange, Watch, csv};
 
 const WATCHDOG: Duration = Duration::from_secs(60);
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -24,6 +26,11 @@ fn recording(seconds: u32) -> Recording {
     let event = |tick| Event { time: SimTime::at_tick(tick), kind: EventKind::RobotArrived };
     recording.events = vec![event(5), event(50)];
     recording
+}
+
+/// A run of which nothing is told but its header.
+fn scene() -> (LiveScene, Option<&'static Grid>) {
+    (LiveScene::default(), None)
 }
 
 /// Longer than any test.
@@ -43,7 +50,7 @@ fn play(sink: &mut LiveSink, tape: &Tape, recording: &Recording) {
         sink.tick(tick as u64, recording.tick(tick));
     }
     writer.finish().unwrap();
-    sink.end();
+    sink.end(&LiveEnd::default());
 }
 
 #[derive(Default)]
@@ -69,7 +76,7 @@ async fn watched(watch: &mut Watch) -> Tally {
             }
             Sight::Missing(range) => tally.gaps.push(range),
             Sight::Event(event) => tally.events.push(event),
-            Sight::End { ticks } => tally.end = Some(ticks),
+            Sight::End { ticks, .. } => tally.end = Some(ticks),
         }
     }
     tally
@@ -86,7 +93,7 @@ async fn a_watcher_gets_the_header_every_tick_every_event_and_the_end() {
         let tape = Tape::default();
         let run = RunId::new("r1").unwrap();
         let recording = recording(3);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         let mut watch = Watch::open(bus, &run, 4096).await.unwrap();
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
@@ -111,7 +118,7 @@ async fn a_slow_watcher_knows_exactly_what_it_missed_and_can_fetch_it() {
         let tape = Tape::default();
         let run = RunId::new("r2").unwrap();
         let recording = recording(20);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         // Room for few ticks, and nothing is read while the run goes on: most are lost.
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4).await.unwrap();
         let mut fence = bus.subscribe(&keys::live_agents(&run), 1, Overflow::DropOldest).await.unwrap();
@@ -146,7 +153,7 @@ async fn a_late_joiner_of_a_finished_run_gets_header_gap_and_end() {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let tape = Tape::default();
         let run = RunId::new("r3").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         let recording = recording(1);
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
@@ -171,7 +178,7 @@ async fn bytes_of_a_stranger_on_the_frame_key_harm_nobody() {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let tape = Tape::default();
         let run = RunId::new("r4").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
         for len in [0_usize, 1, 63, 65] {
             bus.publish(&keys::live_agents(&run), vec![7; len], Qos::Stream).await.unwrap();
@@ -194,8 +201,9 @@ async fn a_run_given_up_in_its_midst_ends_for_its_watchers_and_leaves_the_bus() 
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let tape = Tape::default();
         let run = RunId::new("r5").unwrap();
-        let mut sink =
-            LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &Linger::new(Duration::ZERO, 4)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &Linger::new(Duration::ZERO, 4))
+            .await
+            .unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 64).await.unwrap();
         let recording = recording(1);
         sink.announce(&recording.header);
@@ -241,7 +249,7 @@ async fn three_thousand_agents_are_watched_whole() {
         let tape = Tape::default();
         let run = RunId::new("crowd").unwrap();
         let recording = crowd(3_000, 40);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
@@ -254,7 +262,7 @@ async fn three_thousand_agents_are_watched_whole() {
             match watch.next(PATIENCE).await.unwrap().expect("the run ends") {
                 Sight::Header(seen) => header = Some(seen),
                 Sight::Tick { states, .. } => frames.extend(states),
-                Sight::End { ticks } => break assert_eq!(ticks, 40),
+                Sight::End { ticks, .. } => break assert_eq!(ticks, 40),
                 other @ (Sight::Missing(_) | Sight::Event(_)) => panic!("{other:?}"),
             }
         }
@@ -275,7 +283,7 @@ async fn a_late_watcher_gets_every_tick_from_0_though_the_ring_has_passed_on() {
         let tape = Tape::default();
         let run = RunId::new("late").unwrap();
         let recording = recording(60);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         let (half, halfway) = tokio::sync::oneshot::channel();
         let (go, gone) = std::sync::mpsc::sync_channel(1);
         let played = recording.clone();
@@ -292,7 +300,7 @@ async fn a_late_watcher_gets_every_tick_from_0_though_the_ring_has_passed_on() {
                 sink.tick(tick as u64, played.tick(tick));
             }
             writer.finish().unwrap();
-            sink.end();
+            sink.end(&LiveEnd::default());
             sink
         });
         halfway.await.unwrap();
@@ -310,7 +318,7 @@ async fn a_late_watcher_gets_every_tick_from_0_though_the_ring_has_passed_on() {
                     assert_eq!(fetched.len() as u64, range.len() * 2);
                     fetched.chunks(2).for_each(|now| drop(states.insert(now[0].tick, now.to_vec())));
                 }
-                Sight::End { ticks } => break assert_eq!(ticks, 6_001),
+                Sight::End { ticks, .. } => break assert_eq!(ticks, 6_001),
                 Sight::Header(_) | Sight::Event(_) => {}
             }
         }
@@ -332,7 +340,7 @@ async fn ticks_go_out_several_to_a_message() {
         let run = RunId::new("several").unwrap();
         let recording = recording(10);
         let mut heard = bus.subscribe(&keys::live_agents(&run), 4096, Overflow::DropOldest).await.unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
         let sink = tokio::task::spawn_blocking(move || {
             play(&mut sink, &tape, &recording);
             sink
@@ -353,23 +361,115 @@ async fn a_version_tells_a_watcher_what_it_cannot_read() {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let run = RunId::new("versions").unwrap();
         let mut sink =
-            LiveSink::open(Arc::clone(&bus), &run, Tape::default(), &Linger::new(Duration::ZERO, 4)).await.unwrap();
+            LiveSink::open(Arc::clone(&bus), &run, scene(), Tape::default(), &Linger::new(Duration::ZERO, 4))
+                .await
+                .unwrap();
         sink.announce(&recording(1).header);
         let reply = bus.query(&keys::live_meta(&run), Vec::new(), PATIENCE).await.unwrap();
-        let head: Envelope<serde_json::Value> = decode("live_meta", &reply).unwrap();
-        assert_eq!(head.min_v, 2, "a watcher of version 1 refuses it");
+        let said: serde_json::Value = serde_json::from_slice(&reply).unwrap();
+        assert_eq!((&said["socrates"], &said["version"]), (&"run".into(), &3.into()));
         drop(sink);
-        // And one of this version says so of a run of version 1, whose message had no such number.
+        // One of a later version says which it is, and one before 3 spoke MessagePack.
         let old = RunId::new("old").unwrap();
-        let mut door = bus.serve(&keys::live_meta(&old)).await.unwrap();
-        let mut body = head.body;
-        body.as_object_mut().unwrap().remove("version");
-        let answer = encode(&Envelope::fresh("live_meta", "old", 0, body)).unwrap();
-        let served = tokio::spawn(async move { door.next().await.unwrap().reply(answer).await });
-        let refused = Watch::open(bus, &old, 16).await.err().unwrap();
-        served.await.unwrap().unwrap();
-        assert!(format!("{:?}", refused).contains("Incompatible { found: 1, needs: 2"), "{refused:?}");
+        for (answer, found) in
+            [(br#"{"socrates": "run", "version": 4, "header": 7}"#.to_vec(), 4), (vec![0x88, 0xa1, 0x76], 2)]
+        {
+            let mut door = bus.serve(&keys::live_served(&old)).await.unwrap();
+            let served = tokio::spawn(async move { door.next().await.unwrap().reply(answer).await });
+            let refused = Watch::open(Arc::clone(&bus), &old, 16).await.err().unwrap();
+            served.await.unwrap().unwrap();
+            assert!(
+                format!("{refused:?}").contains(&format!("Incompatible {{ found: {found}, needs: 3")),
+                "{refused:?}"
+            );
+        }
     })
+    .await;
+}
+
+/// A scene on a map of 3 x 2 cells with a door.
+fn told() -> (LiveScene, Grid) {
+    let mut cells = vec![Cell::Free; 6];
+    if let Some(first) = cells.first_mut() {
+        *first = Cell::Occupied;
+    }
+    let grid = Grid { width: 3, height: 2, resolution_m: 0.5, origin: Pose::new(0.0, 0.0, 0.0), cells };
+    let door = MissionDoor { id: "d1".into(), from: [0.0, 0.0], to: [1.0, 0.0] };
+    let location = LivePlace { name: "hall".into(), map: MissionMap::of(&grid, &map_cells(&grid)) };
+    let scene = LiveScene {
+        location: Some(location),
+        doors: vec![LiveDoor { door, open: false }],
+        goal: Some([1.0, 2.0]),
+        pace: Some(2.0),
+        ..LiveScene::default()
+    };
+    (scene, grid)
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_run_tells_its_scene_map_and_doors_and_with_its_end_how_it_is_recorded() {
+    guarded(Box::pin(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let run = RunId::new("told").unwrap();
+        let (scene, grid) = told();
+        let mut recording = recording(1);
+        recording
+            .events
+            .push(Event { time: SimTime::at_tick(60), kind: EventKind::Door { door: "d1".into(), open: true } });
+        let tape = Tape::default();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, (scene.clone(), Some(&grid)), tape.clone(), &linger())
+            .await
+            .unwrap();
+        let mut watch = Watch::open_as(Arc::clone(&bus), &run, 64, Sharpness::Newest).await.unwrap();
+        let mut doors = bus.subscribe(&keys::live_doors(&run), 8, Overflow::DropOldest).await.unwrap();
+        let end = LiveEnd { recording: Some(recording.hash()), file: None };
+        let mut writer = tape.record(&recording.header, None).unwrap();
+        sink.announce(&recording.header);
+        for tick in 0..recording.ticks() {
+            writer.tick(recording.tick(tick)).unwrap();
+            recording
+                .events
+                .iter()
+                .filter(|event| event.time.tick() == tick as u64)
+                .for_each(|event| sink.event(event));
+            sink.tick(tick as u64, recording.tick(tick));
+        }
+        writer.finish().unwrap();
+        sink.end(&end);
+        let mut newest = Vec::new();
+        let mut events = 0;
+        loop {
+            match watch.next(PATIENCE).await.unwrap().expect("the run ends") {
+                Sight::Header(header) => assert_eq!(header, recording.header),
+                Sight::Tick { tick, .. } => newest.push(tick),
+                Sight::Missing(range) => panic!("nothing is missing of the newest: {range:?}"),
+                Sight::Event(_) => events += 1,
+                Sight::End { ticks, end: told } => {
+                    assert_eq!((ticks, told), (recording.ticks() as u64, end.clone()));
+                    break;
+                }
+            }
+        }
+        assert_eq!(newest.last(), Some(&(recording.ticks() as u64 - 1)), "{newest:?}");
+        assert!(newest.len() < 20, "{} of {} ticks in no time", newest.len(), recording.ticks());
+        assert_eq!(events, 3);
+        let said = &watch.told().unwrap().scene;
+        assert_eq!((said.goal, said.pace, &said.location), (scene.goal, scene.pace, &scene.location));
+        // The upper row is the last.
+        assert_eq!(watch.map().await.unwrap(), [0, 0, 0, 100, 0, 0]);
+        let mut turned = false;
+        while let Some((_, body)) = doors.try_next() {
+            turned = serde_json::from_slice::<LiveDoors>(&body).unwrap().doors[0].open;
+        }
+        assert!(turned);
+        let now = bus.query(&keys::live_doors(&run), Vec::new(), PATIENCE).await.unwrap();
+        assert!(serde_json::from_slice::<LiveDoors>(&now).unwrap().doors[0].open, "a late viewer asks");
+        // Every run is found by one question.
+        let all = bus.query_all(keys::RUNS, Vec::new(), 16, PATIENCE).await.unwrap();
+        assert_eq!(all.len(), 1);
+        let bad = bus.query(&keys::live_ctl(&run), b"frames!".to_vec(), PATIENCE).await.unwrap();
+        assert!(String::from_utf8(bad).unwrap().contains("hint"));
+    }))
     .await;
 }
 
@@ -385,7 +485,7 @@ async fn of_many_finished_runs_the_last_stay_and_those_that_are_watched() {
         let mut done = Vec::new();
         for run in &runs {
             let tape = Tape::default();
-            let mut sink = LiveSink::open(Arc::clone(&bus), run, tape.clone(), &linger).await.unwrap();
+            let mut sink = LiveSink::open(Arc::clone(&bus), run, scene(), tape.clone(), &linger).await.unwrap();
             let played = recording.clone();
             let playing = tokio::task::spawn_blocking(move || {
                 play(&mut sink, &tape, &played);
@@ -413,6 +513,45 @@ async fn of_many_finished_runs_the_last_stay_and_those_that_are_watched() {
             assert!(known(run.clone()).await, "{run}");
         }
         drop(done);
+    })
+    .await;
+}
+
+/// Bytes and texts of each version as they were when it was written down: readers of it still find them.
+#[tokio::test]
+async fn messages_of_every_version_are_read_as_they_were_written_down() {
+    guarded(async {
+        let meta = include_str!("data/live/meta-3.json");
+        let read: LiveMeta = serde_json::from_str(meta).unwrap();
+        assert_eq!((read.version, read.agents, read.scene.pace), (live::VERSION, 2, Some(2.0)));
+        let same = |text: &str, again: serde_json::Value| {
+            assert_eq!(serde_json::from_str::<serde_json::Value>(text).unwrap(), again);
+        };
+        same(meta, serde_json::to_value(&read).unwrap());
+        let events = include_str!("data/live/events-3.json");
+        same(events, serde_json::to_value(serde_json::from_str::<LiveEvents>(events).unwrap()).unwrap());
+        let doors = include_str!("data/live/doors-3.json");
+        same(doors, serde_json::to_value(serde_json::from_str::<LiveDoors>(doors).unwrap()).unwrap());
+        // A run of a stranger that says only what is written down is watched to its end.
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let run = RunId::new("my-1.reference-1").unwrap();
+        let mut asked = bus.serve(&keys::live_served(&run)).await.unwrap();
+        let served = tokio::spawn(async move {
+            while let Some(ask) = asked.next().await {
+                match keys::live_topic(ask.key()) {
+                    Some("meta") => ask.reply(meta.as_bytes().to_vec()).await.unwrap(),
+                    _ => ask.reply(br#"{"first": 0, "events": []}"#.to_vec()).await.unwrap(),
+                }
+            }
+        });
+        let mut watch = Watch::open(Arc::clone(&bus), &run, 64).await.unwrap();
+        for bytes in [&include_bytes!("data/live/ticks-2.bin")[..], include_bytes!("data/live/over-2.bin")] {
+            bus.publish(&keys::live_agents(&run), bytes.to_vec(), Qos::Stream).await.unwrap();
+        }
+        let tally = watched(&mut watch).await;
+        assert_eq!((tally.seen, tally.end), (vec![7, 8], Some(1200)));
+        assert_eq!(watch.told().unwrap().ended.as_ref().unwrap().recording.unwrap().to_string(), "3".repeat(64));
+        served.abort();
     })
     .await;
 }

@@ -26,6 +26,7 @@ mod fonts;
 pub mod gif;
 pub mod label;
 pub mod label_page;
+pub mod live_floor;
 pub mod map_layer;
 mod marks;
 pub mod page;

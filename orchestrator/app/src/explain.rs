@@ -198,14 +198,7 @@ pub fn open(talk: &Printer, bundle: &Path) -> Result<(), Complaint> {
             "name the folder that `socrates run` printed after `look`",
         ));
     }
-    let opened = ["xdg-open", "open"].into_iter().any(|program| {
-        std::process::Command::new(program)
-            .arg(&page)
-            .stdout(std::process::Stdio::null())
-            .stderr(std::process::Stdio::null())
-            .status()
-            .is_ok_and(|status| status.success())
-    });
+    let opened = crate::files::open_outside(page.as_os_str());
     talk.line(&format!("{}{}", if opened { "opened     " } else { "look       " }, page.display()));
     talk.result(&json!({ "page": page.display().to_string(), "opened": opened }));
     Ok(())

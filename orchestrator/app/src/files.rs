@@ -1,5 +1,6 @@
 //! Reading and writing the files that are named on the command line.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use crate::exit::Complaint;
@@ -45,6 +46,15 @@ pub(crate) fn write_or_say(talk: &Printer, text: &str, out: Option<&Path>) -> Re
         None => talk.line(text),
     }
     Ok(())
+}
+
+/// Opens a file or an address with the desktop's program; whether there is one that did.
+pub(crate) fn open_outside(what: &OsStr) -> bool {
+    ["xdg-open", "open"].into_iter().any(|program| {
+        let mut command = std::process::Command::new(program);
+        command.arg(what).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+        command.status().is_ok_and(|status| status.success())
+    })
 }
 
 /// A folder as a page beside it refers to it: with `..` where that is needed, and slashes.

@@ -87,6 +87,7 @@ pub mod tokens;
 pub mod traces;
 mod variants;
 pub mod video;
+pub mod view;
 mod wanted;
 pub mod watch;
 #[cfg(test)]

@@ -230,7 +230,7 @@ pub(crate) async fn client(endpoint: &str, namespace: &str, name: &str) -> Resul
 }
 
 /// Turns SIGTERM, SIGINT and, for children of a supervisor, the end of standard input into a wish to leave.
-fn leave(tied: bool) -> watch::Receiver<Stop> {
+pub(crate) fn leave(tied: bool) -> watch::Receiver<Stop> {
     let (wish, shutdown) = watch::channel(Stop::Run);
     let wish = Arc::new(wish);
     if tied {

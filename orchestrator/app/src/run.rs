@@ -21,6 +21,7 @@ use crate::refused::Refused;
 use crate::replay::values;
 use crate::run_options::RunOptions;
 use crate::session::Making;
+use crate::view::viewing::Viewing;
 use crate::wanted::Wanted;
 use crate::{layout, many, next, stages, work};
 
@@ -188,6 +189,24 @@ fn pace(text: &str) -> Result<(), Complaint> {
 }
 
 async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared: Prepared) -> Result<Code, Complaint> {
+    let mut viewing = None;
+    let made = one(talk, config, options, prepared, &mut viewing).await;
+    match (viewing, &made) {
+        (Some(viewing), Ok(_)) => viewing.stay(talk).await?,
+        (Some(viewing), Err(_)) => viewing.leave().await,
+        (None, _) => {}
+    }
+    made
+}
+
+/// Makes one scenario, and shows it meanwhile where that is wanted.
+async fn one(
+    talk: &Printer,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Prepared,
+    viewing: &mut Option<Viewing>,
+) -> Result<Code, Complaint> {
     let shipped = if socrates_maps::shipped::files(&prepared.request.location).is_some() { " (shipped)" } else { "" };
     talk.line(&format!(
         "location   {:<26}author  {}",
@@ -204,12 +223,18 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
         Place::Finished(dir) => {
             talk.line(&format!("known      {} was made from this request; nothing to do", dir.display()));
             let bundle = bundle::read(&dir)?;
+            if options.view {
+                *viewing = Some(Viewing::begin(talk, config, &dir).await?);
+            }
             return Ok(finish(talk, options, &prepared, &bundle, None));
         }
         Place::New(dir) => place::told(talk, &base, dir),
     };
     crate::authors::check(config, [&prepared.author]).await?;
     let work = place::claim(&dir, wish)?;
+    if options.view {
+        *viewing = Some(Viewing::begin(talk, config, &dir).await?);
+    }
     let id = place::named_like(&dir, scenario_id(&prepared.name, options.seed, 0, 1)?);
     let prepared = Arc::new(prepared);
     let writing = {

@@ -53,6 +53,8 @@ pub struct RunOptions {
     pub driver: Option<String>,
     /// Whether a person looks at what the authors made before it goes on.
     pub ask: bool,
+    /// Whether viewers are shown the run, also when it is over, until somebody ends it.
+    pub view: bool,
 }
 
 impl RunOptions {
@@ -72,6 +74,7 @@ impl RunOptions {
             inject: String::new(),
             driver: None,
             ask: false,
+            view: false,
         }
     }
 }

@@ -81,7 +81,7 @@ pub async fn watch(talk: &Printer, what: &str, run: Option<&str>) -> Result<(), 
                 }
                 talk.result(&json!({ "type": "event", "t": event.time.secs(), "event": event.kind }));
             }
-            Sight::End { ticks: all } => {
+            Sight::End { ticks: all, .. } => {
                 (ticks, ended) = (all, true);
                 break;
             }
@@ -153,26 +153,7 @@ fn tick_object(tick: u64, states: &[AgentState]) -> Value {
 
 /// An event in words; nothing for what only programs want to know.
 fn words(kind: &EventKind) -> Option<String> {
-    Some(match kind {
-        EventKind::Gesture { agent, gesture: Some(gesture), to } => {
-            format!("{agent} gestures {gesture}{}", to.map_or_else(String::new, |to| format!(" to {to}")))
-        }
-        EventKind::Gesture { agent, .. } => format!("{agent} ends the gesture"),
-        EventKind::Leaf { human, leaf } => format!("{human}: {leaf}"),
-        EventKind::StepEnded { human, step } => format!("step {step} of {human} is over"),
-        EventKind::Sees { human, distance_m } => format!("{human} sees the robot, {distance_m:.2} m away"),
-        EventKind::Encounter { human, node, gap_s, .. } => {
-            let order = if *gap_s < 0.0 { "before" } else { "after" };
-            format!("{human} meets the robot at {node}, {:.1} s {order} it", gap_s.abs())
-        }
-        EventKind::Contact { a, b, depth_m } => format!("{a} touches {b}, {depth_m:.2} m deep"),
-        EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {depth_m:.2} m deep"),
-        EventKind::Door { door, open } => format!("{door} {}", if *open { "opens" } else { "closes" }),
-        EventKind::RobotArrived => "the robot is at its goal".to_owned(),
-        EventKind::Stuck { agent } => format!("{agent} makes no progress"),
-        EventKind::End { reason } => format!("the run ends: {reason}"),
-        EventKind::Node { .. } => return None,
-    })
+    (!matches!(kind, EventKind::Node { .. })).then(|| socrates_gateway::words::words(kind))
 }
 
 /// The first run that is announced, or one that is going on.

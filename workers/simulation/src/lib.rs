@@ -13,6 +13,7 @@
 
 pub mod driving;
 pub mod pace;
+pub mod scene;
 pub mod simulate;
 #[cfg(feature = "mcap")]
 pub mod stage;

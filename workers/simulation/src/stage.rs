@@ -3,11 +3,12 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use socrates_engine::Onlooker;
+use socrates_engine::{Onlooker, Setup};
 use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
+use socrates_model::live::LiveEnd;
 use socrates_model::{
-    AgentState, Event, FailureClass, Fault, FaultCode, Location, PlannerName, Reading, RecordingHeader, Request, Role,
-    RunId, Where, fault,
+    AgentState, Digest, Event, FailureClass, Fault, FaultCode, Location, PlannerName, Reading, RecordingHeader,
+    Request, Role, RunId, Where, fault,
 };
 use socrates_stream::mcap::{Tape, Writer};
 use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, StreamError};
@@ -15,6 +16,7 @@ use tokio::runtime::Handle;
 
 use crate::driving::{Drive, Mode, OverBus};
 use crate::pace::Pace;
+use crate::scene::scene;
 use crate::simulate::{Driven, setup, simulate_into};
 use crate::summary::Summary;
 
@@ -42,7 +44,7 @@ impl Simulation {
 
 /// Everything of a job, decoded.
 struct Inputs {
-    setup: socrates_engine::Setup,
+    setup: Setup,
     planner: PlannerName,
     request: Option<Request>,
     location: Location,
@@ -94,8 +96,8 @@ impl Scribe {
         }
     }
 
-    /// Ends the recording and makes the outputs of the job.
-    fn outputs(self, run: &RunId) -> Result<Done, Failure> {
+    /// Ends the recording and makes the outputs of the job, and what viewers are told of it.
+    fn outputs(self, run: &RunId) -> Result<(Done, LiveEnd), Failure> {
         let told = |why: &dyn std::fmt::Display| {
             Failure::from(Fault::new(
                 FaultCode::JBlob,
@@ -109,9 +111,11 @@ impl Scribe {
             (None, None) => return Err(told(&"the run never began")),
         };
         let (tape, whole) = writer.finish().map_err(|why| told(&why))?;
+        let file = tape.bytes();
+        let end = LiveEnd { recording: Some(whole.hash), file: Some(Digest::of(&file)) };
         summary.ends(whole.ticks, whole.hash);
-        let recording = Output::bytes(Role::Recording, media::MCAP, tape.bytes());
-        Ok(Done::with(vec![recording, Output::json(Role::Simulation, &summary)?]).remark(summary.remark()))
+        let recording = Output::bytes(Role::Recording, media::MCAP, file);
+        Ok((Done::with(vec![recording, Output::json(Role::Simulation, &summary)?]).remark(summary.remark()), end))
     }
 }
 
@@ -148,7 +152,14 @@ impl Onlooker for Viewers {
     }
 }
 
-async fn viewers(job: &Job, run: &RunId, location: Location, stage: &Simulation) -> Result<Viewers, Failure> {
+async fn viewers(
+    job: &Job,
+    setup: &Setup,
+    location: Location,
+    pace: Pace,
+    stage: &Simulation,
+) -> Result<Viewers, Failure> {
+    let run = &setup.run;
     let tape = Tape::default();
     let live = job.setting("live").unwrap_or("off");
     let (bus, shm) = match live {
@@ -162,13 +173,14 @@ async fn viewers(job: &Job, run: &RunId, location: Location, stage: &Simulation)
         sinks.add(sink);
     }
     if bus {
-        match LiveSink::open(Arc::clone(&job.live_bus()), run, tape.clone(), &stage.linger).await {
+        let has_robot = job.spec().run().is_none_or(|run| !run.planner.is_no_robot());
+        let told = (scene(setup, has_robot, job.spec(), pace), Some(&setup.location.grid));
+        match LiveSink::open(Arc::clone(&job.live_bus()), run, told, tape.clone(), &stage.linger).await {
             Ok(sink) => sinks.add(Box::new(sink)),
             // Viewers never decide about a run.
             Err(why) => tracing::warn!(%run, %why, "nobody can watch this run over the bus"),
         }
     }
-    let pace = Pace::read(job.setting("pace"))?;
     let scribe = Scribe { tape, location, begun: None, broken: None };
     let (start, cancel) = (Instant::now(), job.cancel().clone());
     Ok(Viewers { scribe, sinks, pace, start, cancel, handle: Handle::current() })
@@ -181,24 +193,25 @@ impl Stage for Simulation {
         let Inputs { setup, planner, request, location } = inputs(job)?;
         let run = setup.run.clone();
         let drive = Drive::read(job.setting("drive"), job.setting("drive_patience_s"))?;
-        let mut viewers = viewers(job, &run, location, self).await?;
         let is_driven =
             planner.external().is_some() || request.as_ref().is_some_and(|request| !request.people.is_empty());
-        if drive.mode == Mode::Free && is_driven && viewers.pace == Pace::Max {
-            viewers.pace = Pace::Times(1.0);
-        }
+        let pace = match Pace::read(job.setting("pace"))? {
+            Pace::Max if drive.mode == Mode::Free && is_driven => Pace::Times(1.0),
+            pace @ (Pace::Max | Pace::Times(_)) => pace,
+        };
+        let mut viewers = viewers(job, &setup, location, pace, self).await?;
         let mut outside = OverBus::new(job.live_bus(), Handle::current(), drive, job.cancel().clone());
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
             let driven = request.as_ref().map_or_else(|| Driven::from(&planner), |all| Driven::of(all, &planner));
             let commands = simulate_into(setup, driven, &mut outside, &mut viewers)?;
             let Viewers { scribe, mut sinks, .. } = viewers;
-            let mut done = scribe.outputs(&named)?;
+            let (mut done, end) = scribe.outputs(&named)?;
             if let Some(commands) = commands {
                 done.artifacts.push(Output::json(Role::Commands, &commands)?);
             }
             // The recording is whole before the run is over for its viewers: what they ask for from now on is in it.
-            sinks.end();
+            sinks.end(&end);
             Ok(done)
         });
         match work.await {

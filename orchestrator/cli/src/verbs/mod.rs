@@ -18,6 +18,7 @@ mod score;
 mod serve;
 mod simulate;
 mod video;
+mod view;
 
 use std::path::PathBuf;
 
@@ -112,6 +113,8 @@ pub(crate) enum Verb {
     Drive(drive::Drive),
     /// Watch the agent states of a run that is being made.
     Watch(look::Watch),
+    /// Show runs in a browser, in Foxglove or Lichtblick, while they happen and afterwards.
+    View(view::View),
     /// Show how the scenarios of a folder stand, while they are made and afterwards.
     Status(look::Status),
     /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; without one, list the codes.
@@ -147,6 +150,7 @@ impl Verb {
     pub(crate) const fn is_tied(&self) -> bool {
         matches!(self, Self::Worker(cluster::Worker { tied: true, .. }))
             || matches!(self, Self::Orchestrator(cluster::Up { tied: true, .. }))
+            || matches!(self, Self::View(view::View { tied: true, .. }))
     }
 
     /// Does it.
@@ -156,6 +160,7 @@ impl Verb {
             Self::New(verb) => verb.act(talk).await,
             Self::Read(verb) => verb.act(talk, config),
             Self::Run(verb) => verb.act(talk, config).await,
+            Self::View(verb) => verb.act(talk).await,
             Self::Compare(verb) => verb.act(talk, config).await,
             Self::Open(verb) => verb.act(talk),
             Self::Report(verb) => verb.act(talk),

@@ -63,9 +63,9 @@ pub(crate) struct Options {
     /// `lmstudio:MODEL`, `cassette:FOLDER`, `record:FOLDER=AUTHOR`, `replay:FOLDER=AUTHOR`; wins over the request.
     #[arg(long)]
     author: Option<AuthorSpec>,
-    /// Pace of the simulation: `max`, or simulated seconds per second.
-    #[arg(long, default_value = "max")]
-    pace: String,
+    /// Pace of the simulation: `max`, or simulated seconds per second; default `max`, 1 with `--view`.
+    #[arg(long)]
+    pace: Option<String>,
     /// Exit with 3 unless the verdict is at least this.
     #[arg(long, value_enum, default_value_t = Require::Realised)]
     require: Require,
@@ -83,6 +83,9 @@ pub(crate) struct Options {
     /// Look at the proposal, then at paths and behaviors, before they go on: accept, change in words, edit, have made again.
     #[arg(long)]
     ask: bool,
+    /// Show the run in a browser while it happens, at pace 1 unless `--pace` says otherwise, and afterwards until Ctrl-C.
+    #[arg(long)]
+    view: bool,
 }
 
 impl Options {
@@ -91,12 +94,42 @@ impl Options {
     }
 
     pub(super) fn values(&self) -> RunOptions {
-        let Self { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, driver, ask } =
-            self.clone();
+        let Self {
+            out,
+            seed,
+            seeds,
+            planner,
+            variants,
+            repeats,
+            author,
+            pace,
+            require,
+            workers,
+            inject,
+            driver,
+            ask,
+            view,
+        } = self.clone();
+        let pace = pace.unwrap_or_else(|| if view { "1" } else { "max" }.to_owned());
         let require = match require {
             Require::Any => run_options::Require::Any,
             Require::Realised => run_options::Require::Realised,
         };
-        RunOptions { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, driver, ask }
+        RunOptions {
+            out,
+            seed,
+            seeds,
+            planner,
+            variants,
+            repeats,
+            author,
+            pace,
+            require,
+            workers,
+            inject,
+            driver,
+            ask,
+            view,
+        }
     }
 }

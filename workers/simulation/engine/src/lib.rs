@@ -81,3 +81,4 @@ pub use models::HumanModel;
 pub use recorder::{Keeper, Onlooker, Recorder};
 pub use run::Engine;
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};
+pub use view::in_field_of_view;

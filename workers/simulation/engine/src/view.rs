@@ -115,8 +115,9 @@ impl<'a> View<'a> {
     }
 }
 
-/// Whether a way lies in the field of view of somebody who faces there.
-pub(crate) fn in_field_of_view(heading: &Vector, way: &Vector) -> bool {
+/// Whether a way lies in the field of view of somebody who faces there: 100° to either side.
+#[must_use]
+pub fn in_field_of_view(heading: &Vector, way: &Vector) -> bool {
     // Ahead is always in it; only what is abeam or behind needs the angle.
     heading.dot(way) > 0.0 || angle_between(heading, way) <= HALF_FIELD_OF_VIEW_RAD
 }

@@ -3,7 +3,7 @@
 use socrates_model::driver::{MissionDoor, MissionMap, MissionMessage};
 use socrates_model::lockstep::VERSION;
 use socrates_model::robot::RobotFile;
-use socrates_model::{Cell, Digest, Grid, PlannerName, Point};
+use socrates_model::{PlannerName, Point};
 use socrates_planners::Mission;
 
 use super::{Mode, Wanted};
@@ -11,17 +11,6 @@ use super::{Mode, Wanted};
 /// A point as it is told.
 fn at(point: &Point) -> [f64; 2] {
     [point.x, point.y]
-}
-
-/// Cells of a map as they are told, row by row from the lower left: 0 free, 100 occupied, 255 unknown.
-pub(super) fn cells(grid: &Grid) -> Vec<u8> {
-    let told = |cell: &Cell| match cell {
-        Cell::Free => 0,
-        Cell::Occupied => 100,
-        Cell::Unknown => 255,
-    };
-    // The grid has its upper row first.
-    grid.cells.chunks(grid.width.max(1)).rev().flatten().map(told).collect()
 }
 
 /// The message for this run, with its plan and the cells of its map.
@@ -56,13 +45,6 @@ pub(super) fn message(
             .map(|door| MissionDoor { id: door.id.clone(), from: at(&door.from), to: at(&door.to) })
             .collect(),
         people: wanted.people.to_vec(),
-        map: MissionMap {
-            width: grid.width,
-            height: grid.height,
-            resolution_m: grid.resolution_m,
-            origin: [grid.origin.x, grid.origin.y],
-            yaw: grid.origin.yaw,
-            digest: Digest::of(told_cells),
-        },
+        map: MissionMap::of(grid, told_cells),
     })
 }

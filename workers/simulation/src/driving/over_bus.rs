@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use socrates_kit::Cancel;
 use socrates_link::{Bus, LinkError};
-use socrates_model::driver::{EndMessage, MissionAnswer, Shown};
+use socrates_model::driver::{EndMessage, MissionAnswer, Shown, map_cells};
 use socrates_model::lockstep::{StepHead, read_command, step_bytes};
 use socrates_model::{Command, Digest, Fault, Observation, Point, Polyline, RobotDriver, SeenPerson};
 use tokio::runtime::Handle;
 use tokio::task::JoinHandle;
 
 use super::line::{Line, told};
-use super::mission::{cells, message};
+use super::mission::message;
 use super::{Drive, Driver, Ended, Mode, Outside, Wanted, fault};
 
 /// A command that is older than this holds no more: the robot stops, simulated s.
@@ -57,7 +57,7 @@ impl OverBus {
         session: u64,
     ) -> Result<MissionAnswer, Fault> {
         let failed = |why: String| wanted.fault(why);
-        let cells = cells(&wanted.mission.grid);
+        let cells = map_cells(&wanted.mission.grid);
         let mission = message(wanted, session, self.drive.mode, plan, &cells)?;
         let claims = line.claims().await.map_err(failed)?;
         let answer = line.mission(&mission).await;

@@ -1,0 +1,402 @@
+//! Messages of a run as bytes, one function each.
+
+use foxglove::Encode;
+use foxglove::bytes::Bytes;
+use foxglove::messages::log::Level;
+use foxglove::messages::packed_element_field::NumericType;
+use foxglove::messages::{
+    FrameTransform, FrameTransforms, Grid as GridMessage, LaserScan, Log, Odometry, PackedElementField, PointCloud,
+    Pose, PosesInFrame, Quaternion, Timestamp, Vector2, Vector3,
+};
+use socrates_model::grid::{Cell, Grid};
+use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, EventKind};
+use socrates_model::{AgentId, SimTime};
+
+/// Frame of the map.
+pub(crate) const MAP: &str = "map";
+/// Frame of the robot.
+pub(crate) const ROBOT: &str = "robot";
+/// Most cells of `/map`: a larger map is made coarser by a whole number. Four million are 2 000 × 2 000; a browser draws them as
+/// one texture.
+pub const MAP_CELLS: usize = 4_000_000;
+/// Height at which the beams of the lidar are drawn, m.
+const SCAN_Z_M: f64 = 0.2;
+/// Height at which the intended way is drawn, m: above the map, below everybody.
+const WAY_Z_M: f64 = 0.02;
+/// Height at which people are drawn as points, m.
+const POINT_Z_M: f32 = 1.0;
+/// Bytes of a point: x, y, z, speed.
+const POINT_BYTES: u32 = 16;
+/// Entries of a covariance, which is 6 by 6.
+const COVARIANCE: usize = 36;
+/// Longest text of an event, characters.
+const EVENT_CHARS: usize = 2_000;
+const NANOS: u64 = 1_000_000_000;
+
+/// Occupancy of a free cell, percent.
+const FREE: u8 = 0;
+/// Occupancy of a cell that was never seen, percent: between the two, so that a ramp of gray shows all three.
+const UNKNOWN: u8 = 50;
+/// Occupancy of an occupied cell, percent.
+const OCCUPIED: u8 = 100;
+
+/// A message as bytes.
+pub(crate) fn bytes(message: &impl Encode) -> Bytes {
+    let mut out = Vec::with_capacity(message.encoded_len().unwrap_or_default());
+    // Only a buffer that cannot grow is ever too small.
+    if message.encode(&mut out).is_err() {
+        out.clear();
+    }
+    out.into()
+}
+
+/// Simulated time as a message has it: seconds and nanoseconds from 0.
+pub(crate) fn stamp(time: SimTime) -> Option<Timestamp> {
+    let (sec, nsec) = (time.nanos() / NANOS, time.nanos() % NANOS);
+    u32::try_from(sec).ok().zip(u32::try_from(nsec).ok()).and_then(|(sec, nsec)| Timestamp::new_checked(sec, nsec))
+}
+
+pub(crate) fn turned(yaw: f64) -> Quaternion {
+    Quaternion { x: 0.0, y: 0.0, z: libm::sin(yaw / 2.0), w: libm::cos(yaw / 2.0) }
+}
+
+pub(crate) fn pose([x, y, z]: [f64; 3], yaw: f64) -> Pose {
+    Pose { position: Some(Vector3 { x, y, z }), orientation: Some(turned(yaw)) }
+}
+
+fn field(name: &str, offset: u32, kind: NumericType) -> PackedElementField {
+    PackedElementField { name: name.to_owned(), offset, r#type: kind.into() }
+}
+
+/// `/map`: the grid, its first row at the bottom; nothing where cells are missing or the map is empty.
+#[must_use]
+pub fn map(grid: &Grid) -> Option<Bytes> {
+    if grid.width == 0 || grid.height == 0 || grid.width.checked_mul(grid.height) != Some(grid.cells.len()) {
+        return None;
+    }
+    let coarse = coarseness(grid.width, grid.height);
+    let columns = grid.width.div_ceil(coarse);
+    let mut data = Vec::with_capacity(columns * grid.height.div_ceil(coarse));
+    let rows: Vec<&[Cell]> = grid.cells.chunks_exact(grid.width).rev().collect();
+    for block in rows.chunks(coarse) {
+        let begin = data.len();
+        data.resize(begin + columns, UNKNOWN);
+        for row in block {
+            let line = data.iter_mut().skip(begin);
+            line.zip(row.chunks(coarse)).for_each(|(slot, cells)| *slot = cells.iter().fold(*slot, joined));
+        }
+    }
+    let stride = u32::try_from(columns).ok()?;
+    #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
+    let side = grid.resolution_m * coarse as f64;
+    let origin = &grid.origin;
+    Some(bytes(&GridMessage {
+        timestamp: stamp(SimTime::ZERO),
+        frame_id: MAP.to_owned(),
+        pose: Some(pose([origin.x, origin.y, 0.0], origin.yaw)),
+        column_count: stride,
+        cell_size: Some(Vector2 { x: side, y: side }),
+        row_stride: stride,
+        cell_stride: 1,
+        fields: vec![field("occupancy", 0, NumericType::Uint8)],
+        data: data.into(),
+    }))
+}
+
+/// By which whole number a map is made coarser.
+fn coarseness(width: usize, height: usize) -> usize {
+    (1..).find(|by| width.div_ceil(*by).saturating_mul(height.div_ceil(*by)) <= MAP_CELLS).unwrap_or(1)
+}
+
+/// Occupancy of a place with one more cell: a wall stays a wall, and free floor is told from what was never seen.
+const fn joined(so_far: u8, cell: &Cell) -> u8 {
+    match (so_far, cell) {
+        (OCCUPIED, _) | (_, Cell::Occupied) => OCCUPIED,
+        (FREE, _) | (_, Cell::Free) => FREE,
+        (_, Cell::Unknown) => UNKNOWN,
+    }
+}
+
+/// `/robot/plan`: the points of the way, each facing the next; nothing for a way without points.
+#[must_use]
+pub fn plan(way: &[[f64; 2]]) -> Option<Bytes> {
+    let mut yaw = 0.0;
+    let next = way.iter().skip(1).map(Some).chain([None]);
+    let poses: Vec<Pose> = way
+        .iter()
+        .zip(next)
+        .map(|([x, y], next)| {
+            if let Some([to_x, to_y]) = next {
+                yaw = libm::atan2(to_y - y, to_x - x);
+            }
+            pose([*x, *y, WAY_Z_M], yaw)
+        })
+        .collect();
+    let message = PosesInFrame { timestamp: stamp(SimTime::ZERO), frame_id: MAP.to_owned(), poses };
+    (!message.poses.is_empty()).then(|| bytes(&message))
+}
+
+/// `/tf`: a frame for each of these, named as they are.
+#[must_use]
+pub fn frames<'a>(shown: impl Iterator<Item = (&'a str, &'a AgentState)>, time: SimTime) -> Bytes {
+    let transforms = shown
+        .map(|(name, state)| FrameTransform {
+            timestamp: stamp(time),
+            parent_frame_id: MAP.to_owned(),
+            child_frame_id: name.to_owned(),
+            translation: Some(Vector3 { x: state.x, y: state.y, z: 0.0 }),
+            rotation: Some(turned(state.yaw)),
+        })
+        .collect();
+    bytes(&FrameTransforms { transforms })
+}
+
+/// `/crowd`: a point for each of these; x, y, z in m and the speed in m/s.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "a picture needs no more than a 32-bit number holds")]
+pub fn crowd<'a>(people: impl Iterator<Item = &'a AgentState>, time: SimTime) -> Bytes {
+    let mut data = Vec::with_capacity(people.size_hint().1.unwrap_or_default() * POINT_BYTES as usize);
+    for state in people {
+        let speed = (state.vx * state.vx + state.vy * state.vy).sqrt();
+        let point = [state.x as f32, state.y as f32, POINT_Z_M, speed as f32];
+        data.extend_from_slice(point.map(f32::to_le_bytes).as_flattened());
+    }
+    bytes(&PointCloud {
+        timestamp: stamp(time),
+        frame_id: MAP.to_owned(),
+        pose: Some(pose([0.0; 3], 0.0)),
+        point_stride: POINT_BYTES,
+        fields: [("x", 0), ("y", 4), ("z", 8), ("speed", 12)]
+            .map(|(name, offset)| field(name, offset, NumericType::Float32))
+            .into(),
+        data: data.into(),
+    })
+}
+
+/// `/scan`: the ranges as they are, in the frame of the robot.
+#[must_use]
+pub fn scan(ranges: &[f32], time: SimTime) -> Bytes {
+    #[expect(clippy::cast_precision_loss, reason = "a scan has fewer than 2^53 beams")]
+    let beams = ranges.len().max(1) as f64;
+    bytes(&LaserScan {
+        timestamp: stamp(time),
+        frame_id: ROBOT.to_owned(),
+        pose: Some(pose([0.0, 0.0, SCAN_Z_M], 0.0)),
+        start_angle: 0.0,
+        end_angle: std::f64::consts::TAU * (beams - 1.0) / beams,
+        ranges: ranges.iter().copied().map(f64::from).collect(),
+        intensities: Vec::new(),
+    })
+}
+
+/// `/robot/odom`: pose in the map, velocity turned into the frame of the robot.
+#[must_use]
+pub fn odometry(robot: &AgentState, time: SimTime) -> Bytes {
+    let (sin, cos) = (libm::sin(robot.yaw), libm::cos(robot.yaw));
+    bytes(&Odometry {
+        timestamp: stamp(time),
+        frame_id: MAP.to_owned(),
+        body_frame_id: ROBOT.to_owned(),
+        pose: Some(pose([robot.x, robot.y, 0.0], robot.yaw)),
+        linear_velocity: Some(Vector3 {
+            x: robot.vx * cos + robot.vy * sin,
+            y: robot.vy * cos - robot.vx * sin,
+            z: 0.0,
+        }),
+        angular_velocity: Some(Vector3 { x: 0.0, y: 0.0, z: robot.omega }),
+        // The schema asks for 36 entries, and for zeros where they are not known.
+        pose_covariance: vec![0.0; COVARIANCE],
+        velocity_covariance: vec![0.0; COVARIANCE],
+        metadata: Vec::new(),
+    })
+}
+
+/// `/socrates/agents`: everybody's record, one after the other.
+#[must_use]
+pub fn agents(states: &[AgentState]) -> Bytes {
+    let mut out = Vec::with_capacity(states.len() * AGENT_STATE_BYTES);
+    states.iter().for_each(|state| out.extend_from_slice(&state.to_bytes()));
+    out.into()
+}
+
+/// `/events`: an event with its text, told by whom it is about.
+#[must_use]
+pub fn log(event: &Event, text: &str) -> Bytes {
+    let (level, name) = told_by(&event.kind);
+    bytes(&Log {
+        timestamp: stamp(event.time),
+        level: level.into(),
+        message: text.chars().take(EVENT_CHARS).collect(),
+        name,
+        file: String::new(),
+        line: 0,
+    })
+}
+
+/// How much an event matters, and whom it is about.
+fn told_by(kind: &EventKind) -> (Level, String) {
+    let human = |human: &socrates_model::HumanId| human.to_string();
+    match kind {
+        EventKind::Gesture { agent, .. } => (Level::Info, agent.to_string()),
+        EventKind::Leaf { human: id, .. }
+        | EventKind::StepEnded { human: id, .. }
+        | EventKind::Sees { human: id, .. } => (Level::Debug, human(id)),
+        EventKind::Encounter { human: id, .. } => (Level::Info, human(id)),
+        EventKind::Contact { a: agent, .. } | EventKind::WallContact { agent, .. } | EventKind::Stuck { agent } => {
+            (Level::Warning, agent.to_string())
+        }
+        EventKind::Door { door, .. } => (Level::Info, door.chars().take(EVENT_CHARS).collect()),
+        EventKind::Node { agent, .. } => (Level::Debug, agent.to_string()),
+        EventKind::RobotArrived => (Level::Info, AgentId::Robot.to_string()),
+        EventKind::End { .. } => (Level::Info, "run".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use foxglove::Decode as _;
+    use socrates_model::Pose as MapPose;
+
+    fn close(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-6
+    }
+
+    fn state(agent: u32, x: f64, y: f64) -> AgentState {
+        AgentState { tick: 150, agent, flags: 0, x, y, yaw: std::f64::consts::FRAC_PI_2, vx: 0.6, vy: 0.8, omega: 0.25 }
+    }
+
+    const AT: SimTime = SimTime::at_tick(150);
+
+    #[test]
+    fn a_transform_is_the_bytes_that_the_standard_gives() {
+        // Worked out by hand: message 1 with stamp (1 s, 500 000 000 ns), parent, child, translation, rotation.
+        let still = AgentState { yaw: 0.0, ..state(0, 1.0, 0.0) };
+        let found = frames([("robot", &still)].into_iter(), AT);
+        let mut inner = vec![0x0a, 0x08, 0x08, 0x01, 0x10, 0x80, 0xca, 0xb5, 0xee, 0x01];
+        inner.extend(b"\x12\x03map\x1a\x05robot");
+        inner.extend([0x22, 0x09, 0x09, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f]);
+        inner.extend([0x2a, 0x09, 0x21, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f]);
+        let mut wanted = vec![0x0a, u8::try_from(inner.len()).unwrap()];
+        wanted.extend(inner);
+        assert_eq!(found.as_ref(), wanted);
+    }
+
+    #[test]
+    fn a_map_has_its_first_row_at_the_bottom() {
+        let cells = [Cell::Occupied, Cell::Free, Cell::Free, Cell::Unknown, Cell::Free, Cell::Occupied].to_vec();
+        let grid = Grid { width: 3, height: 2, resolution_m: 0.5, origin: MapPose::new(-1.0, 2.0, 0.0), cells };
+        let read = GridMessage::decode(map(&grid).unwrap()).unwrap();
+        assert_eq!(read.data.as_ref(), [50, 0, 100, 100, 0, 0]);
+        assert_eq!((read.column_count, read.row_stride, read.cell_stride), (3, 3, 1));
+        let at = read.pose.unwrap().position.unwrap();
+        assert!(close(at.x, -1.0) && close(at.y, 2.0) && close(read.cell_size.unwrap().x, 0.5));
+        assert_eq!(read.fields, [field("occupancy", 0, NumericType::Uint8)]);
+    }
+
+    #[test]
+    fn a_map_without_cells_or_with_too_few_is_not_sent() {
+        let grid = |width, height, cells| Grid {
+            width,
+            height,
+            resolution_m: 0.5,
+            origin: MapPose::new(0.0, 0.0, 0.0),
+            cells: vec![Cell::Free; cells],
+        };
+        assert!(map(&grid(0, 0, 0)).is_none() && map(&grid(3, 2, 5)).is_none());
+        assert!(map(&grid(usize::MAX, 2, 5)).is_none() && map(&grid(3, 2, 6)).is_some());
+    }
+
+    #[test]
+    fn a_map_that_is_too_large_is_made_coarser_and_keeps_its_walls() {
+        let (width, height) = (4_001, 2_001);
+        let mut cells = vec![Cell::Free; width * height];
+        // The lower left cell, and one in the middle of the upper row.
+        cells[width * (height - 1)] = Cell::Occupied;
+        cells[2_000] = Cell::Occupied;
+        let grid = Grid { width, height, resolution_m: 0.05, origin: MapPose::new(0.0, 0.0, 0.0), cells };
+        let read = GridMessage::decode(map(&grid).unwrap()).unwrap();
+        assert_eq!((read.column_count, read.data.len()), (2_001, 2_001 * 1_001));
+        assert!(read.data.len() <= MAP_CELLS && close(read.cell_size.unwrap().y, 0.1));
+        let walls: Vec<usize> = (0..read.data.len()).filter(|at| read.data[*at] == 100).collect();
+        assert_eq!(walls, [0, 2_001 * 1_000 + 1_000]);
+    }
+
+    #[test]
+    fn a_way_faces_its_next_point_and_keeps_facing_at_its_end() {
+        let read = PosesInFrame::decode(plan(&[[0.0, 0.0], [0.0, 2.0], [0.0, 3.0]]).unwrap()).unwrap();
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        assert_eq!((read.frame_id.as_str(), read.poses.len()), ("map", 3));
+        for pose in &read.poses {
+            let turned = pose.orientation.unwrap();
+            assert!(close(turned.z, half) && close(turned.w, half), "{turned:?}");
+        }
+        assert!(close(read.poses[1].position.unwrap().y, 2.0));
+        assert!(plan(&[]).is_none() && plan(&[[1.0, 1.0]]).is_some());
+    }
+
+    #[test]
+    fn a_crowd_is_16_bytes_a_person() {
+        let people = [state(1, 1.5, -2.0), state(2, 3.0, 4.0)];
+        let read = PointCloud::decode(crowd(people.iter(), AT)).unwrap();
+        assert_eq!((read.point_stride, read.data.len(), read.frame_id.as_str()), (16, 32, "map"));
+        let values: Vec<f32> = read.data.chunks(4).map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap())).collect();
+        assert_eq!(values, [1.5, -2.0, 1.0, 1.0, 3.0, 4.0, 1.0, 1.0]);
+        let fields: Vec<(&str, u32, i32)> =
+            read.fields.iter().map(|field| (field.name.as_str(), field.offset, field.r#type)).collect();
+        assert_eq!(fields, [("x", 0, 7), ("y", 4, 7), ("z", 8, 7), ("speed", 12, 7)]);
+        let stamp = read.timestamp.unwrap();
+        assert_eq!((stamp.sec(), stamp.nsec()), (1, 500_000_000));
+    }
+
+    #[test]
+    fn a_scan_goes_once_round_from_straight_ahead() {
+        let mut ranges = vec![f32::INFINITY; 360];
+        ranges[90] = 2.5;
+        let read = LaserScan::decode(scan(&ranges, AT)).unwrap();
+        assert_eq!((read.frame_id.as_str(), read.ranges.len()), ("robot", 360));
+        assert!(read.ranges[0].is_infinite() && close(read.ranges[90], 2.5));
+        let step = (read.end_angle - read.start_angle) / 359.0;
+        assert!(close(read.start_angle, 0.0) && close(90.0 * step, std::f64::consts::FRAC_PI_2));
+        assert!(LaserScan::decode(scan(&[], AT)).unwrap().ranges.is_empty());
+    }
+
+    #[test]
+    fn odometry_has_the_velocity_in_the_frame_of_the_robot() {
+        // Facing up, (0.6, 0.8) of the map is 0.8 ahead and 0.6 to the right.
+        let read = Odometry::decode(odometry(&state(0, 1.0, 2.0), AT)).unwrap();
+        let (linear, angular) = (read.linear_velocity.unwrap(), read.angular_velocity.unwrap());
+        assert!(close(linear.x, 0.8) && close(linear.y, -0.6) && close(angular.z, 0.25));
+        assert_eq!((read.frame_id.as_str(), read.body_frame_id.as_str()), ("map", "robot"));
+        assert_eq!((read.pose_covariance.len(), read.velocity_covariance.len()), (36, 36));
+    }
+
+    #[test]
+    fn records_are_those_of_a_recording() {
+        let states = [state(0, 1.0, 2.0), state(3, 4.0, 5.0)];
+        let read: Vec<AgentState> =
+            agents(&states).chunks(AGENT_STATE_BYTES).filter_map(AgentState::from_bytes).collect();
+        assert_eq!(read, states);
+    }
+
+    #[test]
+    fn an_event_is_told_by_whom_it_is_about_and_contacts_are_warnings() {
+        let contact = EventKind::Contact { a: AgentId::Robot, b: AgentId::from_number(3), depth_m: 0.02 };
+        let read = Log::decode(log(&Event { time: AT, kind: contact }, "robot touches human_3")).unwrap();
+        assert_eq!(
+            (read.level(), read.name.as_str(), read.message.as_str()),
+            (Level::Warning, "robot", "robot touches human_3")
+        );
+        assert_eq!(read.timestamp, Timestamp::new_checked(1, 500_000_000));
+        let node =
+            EventKind::Node { agent: AgentId::from_number(2), node: socrates_model::NodeId::new("dock").unwrap() };
+        let read = Log::decode(log(&Event { time: AT, kind: node }, &"x".repeat(5_000))).unwrap();
+        assert_eq!((read.level(), read.name.as_str(), read.message.len()), (Level::Debug, "human_2", EVENT_CHARS));
+    }
+
+    #[test]
+    fn time_beyond_what_a_stamp_holds_has_no_stamp() {
+        assert_eq!(stamp(SimTime::from_nanos(u64::MAX)), None);
+        assert_eq!(stamp(SimTime::ZERO), Timestamp::new_checked(0, 0));
+    }
+}
