@@ -28,6 +28,8 @@ const EVERY: Duration = Duration::from_millis(50);
 const EARLY: f64 = 0.8;
 /// Messages that a viewer may send in a second.
 const MOST_MESSAGES: u32 = 200;
+/// Longest wait for a new viewer to answer.
+const GREETING: Duration = Duration::from_millis(300);
 /// A viewer that answers no ping for so long is let go.
 const FROZEN: Duration = Duration::from_secs(30);
 /// A viewer that is sent nothing is asked for a sign of life so often.
@@ -105,6 +107,19 @@ impl Line {
     }
 }
 
+/// Waits until a new viewer has answered a ping, or not for long: some begin to listen a moment after their socket is open, and would miss
+/// the first texts. Gives what came instead.
+async fn greeted(line: &mut Line, stream: &mut Stream) -> Result<Option<Came>, Gone> {
+    line.ping().await?;
+    match tokio::time::timeout(GREETING, stream.next()).await {
+        Ok(message) => match came(line, message) {
+            Came::Nothing => Ok(None),
+            other @ (Came::Text(_) | Came::Bytes(_) | Came::Leaves) => Ok(Some(other)),
+        },
+        Err(_elapsed) => Ok(None),
+    }
+}
+
 /// What came from a viewer.
 enum Came {
     Text(Utf8Bytes),
@@ -178,6 +193,7 @@ async fn live(run: &Run, mut line: Line, mut stream: Stream, records: bool) -> R
 }
 
 async fn watch(run: &Run, line: &mut Line, stream: &mut Stream, session: &mut Session, guest: u64) -> Result<(), Gone> {
+    let mut early = greeted(line, stream).await?;
     line.put_all(session.opening()).await?;
     let mut news = run.news();
     let mut beat = tokio::time::interval(Duration::from_secs(1));
@@ -220,6 +236,8 @@ async fn watch(run: &Run, line: &mut Line, stream: &mut Stream, session: &mut Se
             line.put(Out::Text(protocol::status(Level::Info, text, Some("end")))).await?;
         }
         let came = tokio::select! {
+            biased;
+            () = std::future::ready(()), if early.is_some() => early.take().unwrap_or(Came::Nothing),
             changed = news.changed() => {
                 if changed.is_err() {
                     return Ok(());
@@ -273,12 +291,15 @@ impl<'a> Player<'a> {
     }
 
     async fn talk(mut self, mut stream: Stream) -> Result<(), Gone> {
+        let mut early = greeted(&mut self.line, &mut stream).await?;
         self.line.put_all(self.session.opening()).await?;
         let mut step = tokio::time::interval(EVERY);
         step.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
         let (mut before, mut messages, mut counted) = (Instant::now(), 0, Instant::now());
         loop {
             let came = tokio::select! {
+                biased;
+                () = std::future::ready(()), if early.is_some() => early.take().unwrap_or(Came::Nothing),
                 message = stream.next() => came(&mut self.line, message),
                 now = step.tick() => {
                     let passed_s = (now - before).as_secs_f64();
