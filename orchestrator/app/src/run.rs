@@ -160,6 +160,12 @@ fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Complaint
             "name one request, with `--variants 1`",
         ));
     }
+    if options.view && count != 1 {
+        return Err(Complaint::input(
+            format!("`--view` shows one scenario while it is made; {count} are asked for"),
+            "without it, `socrates view FOLDER` in another terminal shows the folder of a library",
+        ));
+    }
     Ok(count)
 }
 

@@ -69,9 +69,14 @@ pub async fn view(talk: &Printer, options: &ViewOptions) -> Result<(), Complaint
         talk.line(&format!("foxglove   {foxglove} · layout {layout}"));
     }
     if !address.ip().is_loopback() {
-        talk.warn(
-            "warning: other machines can look at the runs here; the address above holds the token that lets them",
-        );
+        let named = if address.ip().is_unspecified() {
+            format!(", with the name of this machine in place of {} (and `--allow-host NAME`)", address.ip())
+        } else {
+            String::new()
+        };
+        talk.warn(&format!(
+            "warning: other machines can look at the runs here by the address above{named}; it holds the token that lets them"
+        ));
     }
     // Programs read where it is before the first viewer comes.
     talk.result(&json!({ "view": page, "foxglove": foxglove, "layout": layout, "address": address.to_string(), "token": rules.token }));
