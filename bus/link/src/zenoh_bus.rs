@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use async_trait::async_trait;
+use tokio::sync::mpsc::Receiver;
 use zenoh::Session;
 use zenoh::bytes::ZBytes;
 use zenoh::config::Config;
@@ -101,12 +102,49 @@ impl ZenohBus {
         self.namespace.full(key)
     }
 
+    /// Asks those who serve a key and gives the way by which replies come, with room for so many; those beyond are left out.
+    async fn ask(
+        &self,
+        key: &str,
+        body: Vec<u8>,
+        target: QueryTarget,
+        timeout: Duration,
+        room: usize,
+    ) -> Result<Receiver<zenoh::query::Reply>, LinkError> {
+        let full = self.full(key)?;
+        let body = fits(key, body)?;
+        // A channel of our own: whoever gave up waiting is no error, which the transport's own channel would print.
+        let (heard, replies) = tokio::sync::mpsc::channel(room.max(1));
+        let get = self
+            .session
+            .get(full)
+            .payload(body)
+            .target(target)
+            .consolidation(ConsolidationMode::None)
+            .congestion_control(CongestionControl::Block)
+            .express(true)
+            .timeout(timeout)
+            .callback(move |reply| drop(heard.try_send(reply)));
+        get.await.map_err(|why| unanswered(key, &why))?;
+        Ok(replies)
+    }
+
     /// Remembers to close the mailbox with the bus, and forgets those whose reader is gone.
     fn ends_with_bus<T: Send + 'static>(&self, mailbox: &Mailbox<T>) {
         let mut endings = self.endings.lock().unwrap_or_else(PoisonError::into_inner);
         endings.retain(|still_read| still_read(false));
         endings.push(mailbox.ending());
     }
+}
+
+/// Why a question was not answered.
+fn unanswered(key: &str, why: &dyn std::fmt::Display) -> LinkError {
+    transport(&format!("asking `{key}`"), &why.to_string())
+}
+
+/// How long replies are waited for: the transport has the same limit, and ours also holds where a router forgets its own.
+const fn patience(timeout: Duration) -> Duration {
+    timeout.saturating_add(Duration::from_millis(250))
 }
 
 /// How the transport treats a message: what happens where it is full, whom it goes before, whether it waits for company.
@@ -163,32 +201,16 @@ impl Bus for ZenohBus {
     }
 
     async fn query(&self, key: &str, body: Vec<u8>, timeout: Duration) -> Result<Vec<u8>, LinkError> {
-        let full = self.full(key)?;
-        let body = fits(key, body)?;
-        let failed = |why: &dyn std::fmt::Display| transport(&format!("asking `{key}`"), &why.to_string());
         let late = || LinkError::Timeout { key: key.to_owned(), after: timeout };
-        // A channel of our own: whoever gave up waiting is no error, which the transport's own channel would print.
-        let (heard, mut replies) = tokio::sync::mpsc::channel(1);
-        let get = self
-            .session
-            .get(full)
-            .payload(body)
-            .target(QueryTarget::BestMatching)
-            .consolidation(ConsolidationMode::None)
-            .congestion_control(CongestionControl::Block)
-            .express(true)
-            .timeout(timeout)
-            .callback(move |reply| drop(heard.try_send(reply)));
-        get.await.map_err(|why| failed(&why))?;
-        // The transport has the same limit; ours also holds where a router forgets its own.
-        let first = tokio::time::timeout(timeout.saturating_add(Duration::from_millis(250)), replies.recv());
+        let mut replies = self.ask(key, body, QueryTarget::BestMatching, timeout, 1).await?;
+        let first = tokio::time::timeout(patience(timeout), replies.recv());
         match first.await {
             Ok(Some(reply)) => match reply.into_result() {
                 Ok(sample) => Ok(bytes(sample.payload())),
                 Err(error) => match error.payload().try_to_string() {
                     Ok(text) if text.eq_ignore_ascii_case("timeout") => Err(late()),
-                    Ok(text) => Err(failed(&text)),
-                    Err(why) => Err(failed(&why)),
+                    Ok(text) => Err(unanswered(key, &text)),
+                    Err(why) => Err(unanswered(key, &why)),
                 },
             },
             Ok(None) => Err(LinkError::NoReply { key: key.to_owned() }),
@@ -203,21 +225,7 @@ impl Bus for ZenohBus {
         most: usize,
         timeout: Duration,
     ) -> Result<Vec<Vec<u8>>, LinkError> {
-        let full = self.full(expression)?;
-        let body = fits(expression, body)?;
-        let (heard, mut replies) = tokio::sync::mpsc::channel(most.max(1));
-        let get = self
-            .session
-            .get(full)
-            .payload(body)
-            .target(QueryTarget::All)
-            .consolidation(ConsolidationMode::None)
-            .congestion_control(CongestionControl::Block)
-            .express(true)
-            .timeout(timeout)
-            // More than asked for are left out.
-            .callback(move |reply| drop(heard.try_send(reply)));
-        get.await.map_err(|why| transport(&format!("asking `{expression}`"), &why.to_string()))?;
+        let mut replies = self.ask(expression, body, QueryTarget::All, timeout, most).await?;
         let mut found = Vec::new();
         let gathered = async {
             while found.len() < most
@@ -229,8 +237,8 @@ impl Bus for ZenohBus {
                 }
             }
         };
-        // The transport has the same limit; what came until then counts.
-        drop(tokio::time::timeout(timeout.saturating_add(Duration::from_millis(250)), gathered).await);
+        // What came until then counts.
+        drop(tokio::time::timeout(patience(timeout), gathered).await);
         Ok(found)
     }
 

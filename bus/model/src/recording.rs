@@ -80,6 +80,12 @@ impl AgentState {
         crate::Point::new(self.x, self.y)
     }
 
+    /// Whether the agent is there, at a place; `absent` is the leaf of those who are not, see [`RecordingHeader::absent`].
+    #[must_use]
+    pub fn is_there(&self, absent: Option<u16>) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.yaw.is_finite() && absent != Some(self.leaf())
+    }
+
     /// The 64 bytes.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; AGENT_STATE_BYTES] {

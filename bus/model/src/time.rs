@@ -24,6 +24,12 @@ impl SimTime {
         Self(tick.saturating_mul(STEP_NANOS))
     }
 
+    /// Time of the last of so many ticks; the start of the run where there is none.
+    #[must_use]
+    pub const fn of_last(ticks: u64) -> Self {
+        Self::at_tick(ticks.saturating_sub(1))
+    }
+
     /// Time of so many nanoseconds.
     #[must_use]
     pub const fn from_nanos(nanos: u64) -> Self {

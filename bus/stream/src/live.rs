@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use serde::Serialize;
 use socrates_link::{Ask, Bus, LinkError, Publish, Qos, Serving, keys};
+use socrates_model::RunId;
 use socrates_model::live::{LiveEnd, LiveScene};
 use socrates_model::recording::{AgentState, Event, RecordingHeader};
-use socrates_model::{Grid, RunId};
 use tokio::sync::Notify;
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
@@ -73,20 +73,20 @@ pub struct LiveSink {
 impl LiveSink {
     /// Opens the run's keys. Queries are served before it returns, so that the run can be asked about from tick 0 on. The
     /// last seconds are kept here; older ticks are read from `tape`, where somebody else records the run. Viewers are told the scene,
-    /// and the map on which it is played.
+    /// and the cells of its map, see [`socrates_model::driver::map_cells`]; none where it has no map.
     ///
     /// # Errors
     /// [`StreamError::Link`].
     pub async fn open(
         bus: Arc<dyn Bus>,
         run: &RunId,
-        (scene, grid): (LiveScene, Option<&Grid>),
+        (scene, cells): (LiveScene, Vec<u8>),
         tape: Tape,
         linger: &Linger,
     ) -> Result<Self, StreamError> {
         let failed = |why: LinkError| StreamError::Link { run: run.to_string(), why };
         let asked = bus.serve(&keys::live_served(run)).await.map_err(failed)?;
-        let (shelf, news) = (Arc::new(Shelf::before(tape, scene, grid)), Arc::new(Notify::new()));
+        let (shelf, news) = (Arc::new(Shelf::before(tape, scene, cells)), Arc::new(Notify::new()));
         let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
         let publisher = Some(tokio::spawn(task.publish(asked, linger.clone())));
         Ok(Self { shelf, news, publisher })
@@ -269,12 +269,12 @@ impl Publisher {
             },
             Some("doors") => ask.reply(self.json(&self.shelf.doors())?).await,
             Some("map") => {
-                let first = ask.body().try_into().map_or(0, u64::from_le_bytes);
-                ask.reply(self.shelf.map(first).unwrap_or_default()).await
+                let part = self.shelf.map(first_wanted(&ask)).unwrap_or_default();
+                ask.reply(part).await
             }
             Some("events") => {
-                let from = ask.body().try_into().map_or(0, u64::from_le_bytes);
-                ask.reply(self.json(&self.shelf.events(from))?).await
+                let events = self.shelf.events(first_wanted(&ask));
+                ask.reply(self.json(&events)?).await
             }
             Some("ctl") => self.answer_ctl(ask).await,
             // Whatever else is under the run is not asked for.
@@ -299,6 +299,11 @@ impl Publisher {
             }
         }
     }
+}
+
+/// The number of the first thing that is asked for: 8 bytes, or nothing for the first of all.
+fn first_wanted(ask: &Ask) -> u64 {
+    ask.body().try_into().map_or(0, u64::from_le_bytes)
 }
 
 /// What was told so far.

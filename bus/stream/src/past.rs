@@ -35,6 +35,15 @@ impl Past {
         self.agents
     }
 
+    /// Whole ticks that come with one answer, at least 1.
+    #[must_use]
+    pub const fn ticks_at_once(&self) -> usize {
+        match part::ticks_that_fit(self.agents) {
+            0 => 1,
+            ticks => ticks,
+        }
+    }
+
     /// The states of the ticks from one to another, in order, as many as the run has: fewer end before the first that it lacks.
     ///
     /// # Errors

@@ -6,8 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
-use socrates_model::Grid;
-use socrates_model::driver::map_cells;
 use socrates_model::live::{LiveDoor, LiveDoors, LiveEnd, LiveEvents, LiveMeta, LiveScene, VERSION};
 use socrates_model::lockstep::{MAP_PART_CELLS, map_bytes};
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentInfo, AgentState, Event, EventKind, RecordingHeader};
@@ -98,10 +96,10 @@ impl Rows {
 }
 
 impl Shelf {
-    /// A shelf for a run of this scene on this map, whose older ticks are on this tape.
-    pub(crate) fn before(tape: Tape, scene: LiveScene, grid: Option<&Grid>) -> Self {
+    /// A shelf for a run of this scene on a map of these cells, whose older ticks are on this tape.
+    pub(crate) fn before(tape: Tape, scene: LiveScene, cells: Vec<u8>) -> Self {
         let rows = Mutex::new(Rows { doors: scene.doors.clone(), scene, ..Rows::default() });
-        Self { tape, rows, cells: grid.map(map_cells).unwrap_or_default(), ..Self::default() }
+        Self { tape, rows, cells, ..Self::default() }
     }
 
     fn rows(&self) -> MutexGuard<'_, Rows> {
@@ -295,7 +293,7 @@ mod tests {
         }
         let recording = csv::read_tracks(&text).unwrap();
         let tape = Tape::default();
-        let shelf = Shelf::before(tape.clone(), LiveScene::default(), None);
+        let shelf = Shelf::before(tape.clone(), LiveScene::default(), Vec::new());
         let mut writer = tape.record(&recording.header, None).unwrap();
         shelf.announce(&recording.header);
         for tick in 0..recording.ticks() {

@@ -120,7 +120,7 @@ impl Watch {
         Ok(watch)
     }
 
-    /// What the run said of itself last: place, goal, pace, inputs; none before it was heard.
+    /// What the run said of itself last: place, goal, pace, inputs, with all its agents; none before it was heard.
     #[must_use]
     pub const fn told(&self) -> Option<&LiveMeta> {
         self.told.as_ref()
@@ -263,7 +263,9 @@ impl Watch {
         }
         self.events_up_to(meta.events).await?;
         let (ended, ticks) = (meta.ended.is_some(), meta.ticks);
-        self.told = Some(meta);
+        // With all agents, of whom a message may hold the first.
+        let header = self.header.clone().unwrap_or_else(|| meta.header.clone());
+        self.told = Some(LiveMeta { header, ..meta });
         if quiet && ended {
             // Frames that came while the run was asked go first.
             while let Some((_, body)) = self.agents.try_next() {

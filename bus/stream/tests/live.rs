@@ -29,8 +29,8 @@ fn recording(seconds: u32) -> Recording {
 }
 
 /// A run of which nothing is told but its header.
-fn scene() -> (LiveScene, Option<&'static Grid>) {
-    (LiveScene::default(), None)
+fn scene() -> (LiveScene, Vec<u8>) {
+    (LiveScene::default(), Vec::new())
 }
 
 /// Longer than any test.
@@ -417,9 +417,10 @@ async fn a_run_tells_its_scene_map_and_doors_and_with_its_end_how_it_is_recorded
             .events
             .push(Event { time: SimTime::at_tick(60), kind: EventKind::Door { door: "d1".into(), open: true } });
         let tape = Tape::default();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, (scene.clone(), Some(&grid)), tape.clone(), &linger())
-            .await
-            .unwrap();
+        let mut sink =
+            LiveSink::open(Arc::clone(&bus), &run, (scene.clone(), map_cells(&grid)), tape.clone(), &linger())
+                .await
+                .unwrap();
         let mut watch = Watch::open_as(Arc::clone(&bus), &run, 64, Sharpness::Newest).await.unwrap();
         let mut doors = bus.subscribe(&keys::live_doors(&run), 8, Overflow::DropOldest).await.unwrap();
         let end = LiveEnd { recording: Some(recording.hash()), file: None };

@@ -16,7 +16,7 @@ impl There {
 
     /// Whether the agent is there, at a place.
     pub(crate) fn is(self, state: &AgentState) -> bool {
-        state.x.is_finite() && state.y.is_finite() && state.yaw.is_finite() && self.absent != Some(state.leaf())
+        state.is_there(self.absent)
     }
 }
 

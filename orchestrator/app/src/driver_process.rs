@@ -6,11 +6,11 @@ use std::process::Stdio;
 use std::time::Duration;
 
 use socrates_link::Presence;
-use tokio::process::{Child, Command};
+use tokio::process::Child;
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
-use crate::child::leave;
+use crate::child::{command, ended, leave};
 use crate::exit::Complaint;
 
 /// Starts in a row without a claim after which it is not started again.
@@ -46,17 +46,12 @@ impl DriverCommand {
             Complaint::input(format!("the driver `{}` cannot be started: {why}", self.line), hint)
         };
         let said = std::io::stderr().as_fd().try_clone_to_owned().map_err(cannot)?;
-        Command::new(&self.program)
+        command(&self.program)
             .args(&self.args)
             .env("SOCRATES_ENDPOINT", &self.endpoint)
             .env("SOCRATES_NAMESPACE", &self.namespace)
             .env("SOCRATES_TIED", "1")
-            .stdin(Stdio::piped())
             .stdout(Stdio::from(said))
-            .stderr(Stdio::inherit())
-            .kill_on_drop(true)
-            // Ctrl-C reaches the supervisor alone.
-            .process_group(0)
             .spawn()
             .map_err(cannot)
     }
@@ -73,14 +68,7 @@ impl DriverCommand {
         let mut idle = 0;
         loop {
             let pipe = child.stdin.take();
-            let ended = tokio::select! {
-                status = child.wait() => Some(status),
-                changed = stopped.wait_for(|stop| *stop) => {
-                    drop(changed);
-                    None
-                }
-            };
-            let Some(status) = ended else { return leave(child, pipe, "driver").await };
+            let Some(status) = ended(&mut child, &mut stopped).await else { return leave(child, pipe, "driver").await };
             let mut claimed = false;
             while let Ok(Some((_, alive))) = timeout(Duration::ZERO, claims.next()).await {
                 claimed |= alive;

@@ -74,7 +74,7 @@ impl<'a> Scribe<'a> {
         if let Some((file, _)) = self.table {
             file.into_inner().map_err(|why| cannot(&self.table_path.unwrap_or_default(), why.error()))?;
         }
-        let last_s = SimTime::at_tick(self.ticks.saturating_sub(1)).secs();
+        let last_s = SimTime::of_last(self.ticks).secs();
         Ok(Written { last_s, contacts: self.contacts, hash: self.hash.finish() })
     }
 

@@ -5,7 +5,6 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,12 +12,12 @@ use socrates_link::{Bus, keys};
 use socrates_model::job::Stage;
 use tempfile::TempDir;
 use tokio::io::AsyncReadExt as _;
-use tokio::process::{Child, Command};
+use tokio::process::Child;
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
-use crate::child::leave;
+use crate::child::{command, ended, leave};
 use crate::config::Config;
 use crate::driver_process::DriverCommand;
 use crate::exit::{Code, Complaint};
@@ -208,19 +207,13 @@ fn roles(
 const ARENAS: (&str, &str) = ("MALLOC_ARENA_MAX", "2");
 
 fn spawn(role: &Role, more: &[String]) -> Result<Child, Complaint> {
-    let mut command = Command::new(&role.program);
+    let mut command = command(&role.program);
     if role.few_arenas {
         command.env(ARENAS.0, ARENAS.1);
     }
     command
         .args(&role.args)
         .args(more)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::inherit())
-        .kill_on_drop(true)
-        // Ctrl-C reaches the supervisor alone, which then asks the children to leave.
-        .process_group(0)
         .spawn()
         .map_err(|why| ours(&format!("the {} process cannot be started: {why}", role.name)))
 }
@@ -250,14 +243,7 @@ async fn keep(
     // Waiting for a child closes its standard input, unless somebody else holds the pipe.
     let mut pipe = child.stdin.take();
     loop {
-        let ended = tokio::select! {
-            status = child.wait() => Some(status),
-            changed = stopped.wait_for(|stop| *stop) => {
-                drop(changed);
-                None
-            }
-        };
-        let Some(status) = ended else {
+        let Some(status) = ended(&mut child, &mut stopped).await else {
             return leave(child, pipe, &role.name).await;
         };
         let now = Instant::now();

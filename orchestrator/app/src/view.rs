@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 use socrates_gateway::guard::{Rules, TOKEN_CHARS};
+use socrates_gateway::http::Policy;
 use socrates_gateway::{Gateway, Tls};
 use tokio::net::TcpListener;
 
@@ -57,6 +58,8 @@ pub async fn view(talk: &Printer, options: &ViewOptions) -> Result<(), Complaint
     let listener = listen(options).await?;
     let address = listener.local_addr().map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
     let rules = rules(options, &address)?;
+    let policy = Policy::letting(&options.frames)
+        .map_err(|why| Complaint::input(why, "--allow-frame names an origin such as https://lab.example"))?;
     let tls = options.tls.as_ref().map(|(cert, key)| tls(cert, key)).transpose()?;
     let scheme = if tls.is_some() { "https" } else { "http" };
     let fragment = rules.token.as_ref().map_or_else(String::new, |token| format!("#token={token}"));
@@ -86,7 +89,7 @@ pub async fn view(talk: &Printer, options: &ViewOptions) -> Result<(), Complaint
         drop(tokio::task::spawn_blocking(move || crate::files::open_outside(opens.as_ref())));
     }
     let mut leaves = leave(options.tied);
-    let gateway = Gateway { rules, frames: options.frames.clone(), tls };
+    let gateway = Gateway { rules, policy, tls };
     let folder = Folder::watch(place);
     let served = gateway.serve(listener, vec![Box::new(Runs(Arc::clone(&folder)))]);
     tokio::select! {
@@ -113,7 +116,7 @@ async fn listen(options: &ViewOptions) -> Result<TcpListener, Complaint> {
         .with_code(Code::Ours))
 }
 
-/// Who may come in: on this machine everybody, from elsewhere those with the token.
+/// What is let in: from this machine everybody, from elsewhere those with the token.
 fn rules(options: &ViewOptions, address: &SocketAddr) -> Result<Rules, Complaint> {
     let token = match &options.token_file {
         Some(file) => Some(token_of(file)?),

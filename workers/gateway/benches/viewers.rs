@@ -25,6 +25,7 @@ use serde_json::Value;
 use socrates_gateway::Gateway;
 use socrates_gateway::frame::{Sights, encode};
 use socrates_gateway::guard::Rules;
+use socrates_gateway::http::Policy;
 use socrates_gateway::hub::Shelf;
 use socrates_gateway::page::PROTOCOL;
 use socrates_gateway::run::{Run, Ticks};
@@ -174,7 +175,9 @@ async fn serve(kind: &str, agents: u32) {
         bare(listener, agents).await;
     } else {
         let rules = Rules { most: 1_000, ..Rules::default() };
-        Gateway { rules, ..Gateway::default() }.serve(listener, vec![Box::new(One(agents))]).await;
+        Gateway { rules, policy: Policy::letting(&[]).unwrap(), tls: None }
+            .serve(listener, vec![Box::new(One(agents))])
+            .await;
     }
 }
 

@@ -1,4 +1,4 @@
-//! Runs on the bus: who announces one is listed; a viewer's question makes it followed.
+//! Runs on the bus: one that is announced is listed; a viewer's question makes it followed.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -8,16 +8,18 @@ use async_trait::async_trait;
 use bytes::Bytes;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
-use socrates_kit::Blobs;
+use socrates_kit::{Blobs, chain};
 use socrates_link::{Bus, Overflow, keys};
 use socrates_model::driver::grid_of;
 use socrates_model::live::{LiveEnd, LiveMeta};
-use socrates_model::{AgentState, Digest, FORMAT, Location, Point, Recording, Role, RunId, SceneGraph, SimTime};
+use socrates_model::{
+    AgentState, Digest, FORMAT, Location, Recording, RecordingHeader, Role, RunId, SceneGraph, SimTime,
+};
 use socrates_stream::{Past, Sharpness, Sight, Watch};
 
 use crate::hub::Shelf;
 use crate::judge::Papers;
-use crate::run::{Phase, Run, Ticks};
+use crate::run::{Phase, Run, Ticks, ticks_of_an_answer};
 use crate::scene::Scene;
 
 /// Announcements that may wait unread.
@@ -117,7 +119,7 @@ impl Shelf for Air {
                 "run": header.run, "state": if meta.ended.is_some() { "ended" } else { "live" }, "planner": header.planner,
                 "seed": header.seed, "title": title(&header.run),
                 "location": meta.scene.location.as_ref().map(|place| &place.name),
-                "time_s": SimTime::at_tick(meta.ticks.saturating_sub(1)).secs(), "agents": meta.agents, "verdict": null,
+                "time_s": SimTime::of_last(meta.ticks).secs(), "agents": meta.agents, "verdict": null,
             });
             (meta.header.run, told)
         };
@@ -126,7 +128,7 @@ impl Shelf for Air {
 
     async fn open(&self, run: &RunId) -> Result<Option<Run>, String> {
         let watch = Watch::open_as(Arc::clone(&self.bus), run, DEPTH, Sharpness::Newest);
-        let watch = watch.await.map_err(|why| told(&why))?;
+        let watch = watch.await.map_err(|why| chain(&why))?;
         if let Some(meta) = watch.told().cloned() {
             let location = location(&self.bus, &meta, Some(&watch)).await;
             let scene = scene(&meta, location);
@@ -147,20 +149,10 @@ impl Shelf for Air {
             return;
         }
         let Some(meta) = self.known().get(run.id()).cloned() else { return };
-        let follower = Follower { bus: Arc::clone(&self.bus), run: Arc::downgrade(run), id: run.id().clone(), meta };
+        let header = run.scene.header.clone();
+        let follower = Follower { bus: Arc::clone(&self.bus), run: Arc::downgrade(run), header, meta };
         tokio::spawn(follower.follow());
     }
-}
-
-/// An error with its causes in one line.
-fn told(why: &dyn std::error::Error) -> String {
-    let mut words = why.to_string();
-    let mut cause = why.source();
-    while let Some(next) = cause {
-        words = format!("{words}: {next}");
-        cause = next.source();
-    }
-    words
 }
 
 /// An artifact that the orchestrator hands out, decoded.
@@ -195,17 +187,7 @@ async fn location(bus: &Arc<dyn Bus>, meta: &LiveMeta, watch: Option<&Watch>) ->
 }
 
 fn scene(meta: &LiveMeta, location: Location) -> Scene {
-    let at = |[x, y]: &[f64; 2]| Point::new(*x, *y);
-    Scene {
-        header: meta.header.clone(),
-        title: title(&meta.header.run),
-        location,
-        doors: meta.scene.doors.clone(),
-        robot: meta.scene.robot.as_ref().map(|robot| (robot.name.to_string(), robot.radius_m, robot.lidar_range_m)),
-        goal: meta.scene.goal.as_ref().map(at),
-        way: meta.scene.way.iter().map(at).collect(),
-        pace: meta.scene.pace,
-    }
+    Scene::of(meta.header.clone(), title(&meta.header.run), location, &meta.scene)
 }
 
 /// Ticks of a run that goes on, from the run itself.
@@ -214,12 +196,12 @@ struct Older(Past);
 #[async_trait]
 impl Ticks for Older {
     async fn ticks(&self, from: u64, to: u64, every: u64) -> Vec<Vec<AgentState>> {
-        let agents = self.0.agents().max(1);
-        let most = (crate::run::ANSWER_BYTES / (agents * crate::frame::RECORD_BYTES) + 1) as u64;
+        let agents = self.0.agents();
+        let most = ticks_of_an_answer(agents) as u64;
         let to = to.min(from.saturating_add(most.saturating_mul(every)));
         let mut found = Vec::new();
-        if every >= agents_worth_asking_alone(agents) {
-            // Few of many: each is asked for by itself.
+        // Where an answer of the run would hold one of them, each is asked for by itself.
+        if every >= (self.0.ticks_at_once() as u64).max(2) {
             let mut tick = from;
             while tick <= to {
                 let one = self.0.ticks(tick, tick).await.unwrap_or_default();
@@ -238,24 +220,19 @@ impl Ticks for Older {
     }
 }
 
-/// From how many ticks apart on single ticks are asked for: where a message holds fewer than that many ticks.
-const fn agents_worth_asking_alone(agents: usize) -> u64 {
-    let fit = 767 / agents;
-    if fit < 2 { 2 } else { fit as u64 }
-}
-
 /// Follows a run to its end.
 struct Follower {
     bus: Arc<dyn Bus>,
     run: Weak<Run>,
-    id: RunId,
+    /// With all agents, of whom the announcement may name the first.
+    header: RecordingHeader,
     meta: LiveMeta,
 }
 
 impl Follower {
     async fn follow(self) {
         let papers = self.papers().await;
-        let end = match Watch::open_as(Arc::clone(&self.bus), &self.id, DEPTH, Sharpness::Newest).await {
+        let end = match Watch::open_as(Arc::clone(&self.bus), &self.header.run, DEPTH, Sharpness::Newest).await {
             Ok(watch) if watch.told().is_some() => self.watch(watch, papers.as_ref()).await,
             Ok(_) | Err(_) => self.meta.ended.clone().map(|end| (self.meta.ticks, end)),
         };
@@ -271,7 +248,7 @@ impl Follower {
 
     async fn papers(&self) -> Option<Papers> {
         Some(Papers {
-            location: paper(&self.bus, &self.meta, Role::Location).await?,
+            location: self.run.upgrade()?.scene.location.clone(),
             request: paper(&self.bus, &self.meta, Role::Request).await,
             reading: paper(&self.bus, &self.meta, Role::Reading).await,
             proposal: paper(&self.bus, &self.meta, Role::Proposal).await?,
@@ -281,7 +258,7 @@ impl Follower {
 
     /// Hands every sight to the run; gives its end, or none where nobody holds the run any more.
     async fn watch(&self, mut watch: Watch, papers: Option<&Papers>) -> Option<(u64, LiveEnd)> {
-        let mut so_far = SoFar::new(&self.bus, &self.meta);
+        let mut so_far = SoFar::new(&self.bus, &self.header);
         let mut judge = tokio::time::interval(JUDGE);
         judge.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
         let mut silent = 0;
@@ -347,9 +324,9 @@ struct SoFar {
 }
 
 impl SoFar {
-    fn new(bus: &Arc<dyn Bus>, meta: &LiveMeta) -> Self {
-        let past = Past::new(Arc::clone(bus), &meta.header.run, meta.header.agents.len());
-        let recording = Recording { header: meta.header.clone(), frames: Vec::new(), events: Vec::new() };
+    fn new(bus: &Arc<dyn Bus>, header: &RecordingHeader) -> Self {
+        let past = Past::new(Arc::clone(bus), &header.run, header.agents.len());
+        let recording = Recording { header: header.clone(), frames: Vec::new(), events: Vec::new() };
         Self { past, recording }
     }
 

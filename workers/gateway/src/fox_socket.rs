@@ -7,65 +7,37 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
-use futures_util::stream::SplitSink;
-use futures_util::{SinkExt as _, StreamExt as _};
+use futures_util::StreamExt as _;
 use socrates_model::{Recording, SimTime};
 use tokio::time::Instant;
 
 use crate::fox::{self, Ask, Frame, Heard, Inbound, Level, Out, Session, Stage, protocol};
-use crate::run::{Phase, Run};
+use crate::run::Run;
 use crate::scene::Eyes;
+use crate::socket::{EARLY, Gone, Line, PING, WINDOW};
 use crate::staging::{ranges, stage};
 use crate::words::words;
 
 /// Bytes of a message from a viewer, at most.
 pub(crate) const MOST_BYTES: usize = 64 * 1024;
-/// Frames on their way, at most.
-const WINDOW: u32 = 2;
 /// Time from one frame to the next, at least: 20 a second.
 const EVERY: Duration = Duration::from_millis(50);
-/// Share of that time after which the next may go: one that comes a little early needs no timer.
-const EARLY: f64 = 0.8;
-/// Messages that a viewer may send in a second.
-const MOST_MESSAGES: u32 = 200;
 /// Longest wait for a new viewer to answer.
 const GREETING: Duration = Duration::from_millis(300);
-/// A viewer that answers no ping for so long is let go.
-const FROZEN: Duration = Duration::from_secs(30);
-/// A viewer that is sent nothing is asked for a sign of life so often.
-const PING: Duration = Duration::from_secs(5);
-
-/// The viewer is gone.
-struct Gone;
-
-/// One viewer's socket.
-struct Line {
-    sink: SplitSink<WebSocket, Message>,
+/// The way to one viewer, on which pings tell what has come.
+struct Pinged {
+    line: Line,
     /// Pings so far, and answers.
     pinged: u32,
     answered: u32,
     pinged_at: Instant,
-    moved_at: Instant,
 }
 
-impl Line {
-    async fn send(&mut self, message: Message) -> Result<(), Gone> {
-        match tokio::time::timeout(FROZEN, self.sink.send(message)).await {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(_)) | Err(_) => Err(Gone),
-        }
-    }
-
-    /// Answers a farewell.
-    async fn farewell(&mut self) -> Result<(), Gone> {
-        drop(tokio::time::timeout(FROZEN, self.sink.close()).await);
-        Ok(())
-    }
-
+impl Pinged {
     async fn put(&mut self, out: Out) -> Result<(), Gone> {
         match out {
-            Out::Text(text) => self.send(Message::Text(Utf8Bytes::from(text))).await,
-            other @ (Out::Binary(_) | Out::Data { .. }) => self.send(Message::Binary(other.into_bytes())).await,
+            Out::Text(text) => self.line.send(Message::Text(Utf8Bytes::from(text))).await,
+            other @ (Out::Binary(_) | Out::Data { .. }) => self.line.send(Message::Binary(other.into_bytes())).await,
         }
     }
 
@@ -80,11 +52,11 @@ impl Line {
     async fn ping(&mut self) -> Result<(), Gone> {
         self.pinged = self.pinged.wrapping_add(1);
         self.pinged_at = Instant::now();
-        self.send(Message::Ping(self.pinged.to_le_bytes().to_vec().into())).await
+        self.line.send(Message::Ping(self.pinged.to_le_bytes().to_vec().into())).await
     }
 
     fn answered(&mut self, bytes: &[u8]) {
-        self.moved_at = Instant::now();
+        self.line.moved();
         if let Ok(number) = <[u8; 4]>::try_from(bytes) {
             let number = u32::from_le_bytes(number);
             // Only what was asked can be answered.
@@ -95,21 +67,28 @@ impl Line {
     }
 
     const fn is_free(&self) -> bool {
-        self.pinged.wrapping_sub(self.answered) < WINDOW
+        (self.pinged.wrapping_sub(self.answered) as usize) < WINDOW
     }
 
     /// Lets go of a frozen viewer, and asks an idle one for a sign of life.
     async fn beat(&mut self) -> Result<(), Gone> {
-        if self.moved_at.elapsed() > FROZEN {
-            return Err(Gone);
-        }
+        self.line.idle()?;
         if self.pinged_at.elapsed() > PING { self.ping().await } else { Ok(()) }
+    }
+
+    /// Whether a viewer leaves, or says too much and has to; then it is answered.
+    async fn parts(&mut self, came: &Came) -> bool {
+        let parts = self.line.says_too_much() || matches!(came, Came::Leaves);
+        if parts {
+            self.line.farewell().await;
+        }
+        parts
     }
 }
 
 /// Waits until a new viewer has answered a ping, or not for long: some begin to listen a moment after their socket is open, and would miss
 /// the first texts. Gives what came instead.
-async fn greeted(line: &mut Line, stream: &mut Stream) -> Result<Option<Came>, Gone> {
+async fn greeted(line: &mut Pinged, stream: &mut Stream) -> Result<Option<Came>, Gone> {
     line.ping().await?;
     match tokio::time::timeout(GREETING, stream.next()).await {
         Ok(message) => match came(line, message) {
@@ -128,7 +107,7 @@ enum Came {
     Leaves,
 }
 
-fn came(line: &mut Line, message: Option<Result<Message, axum::Error>>) -> Came {
+fn came(line: &mut Pinged, message: Option<Result<Message, axum::Error>>) -> Came {
     match message {
         Some(Ok(Message::Text(text))) => Came::Text(text),
         Some(Ok(Message::Binary(bytes))) => Came::Bytes(bytes),
@@ -158,9 +137,8 @@ fn given(session: &Session, messages: &[fox::Message]) -> Vec<Out> {
 ///
 /// With `records` the records of every agent are offered too: viewers of others show an error about a schema that they do not know.
 pub(crate) async fn talk(socket: WebSocket, run: Arc<Run>, records: bool) {
-    let now = Instant::now();
     let (sink, stream) = socket.split();
-    let line = Line { sink, pinged: 0, answered: 0, pinged_at: now, moved_at: now };
+    let line = Pinged { line: Line::new(sink), pinged: 0, answered: 0, pinged_at: Instant::now() };
     let recording = run.recording().map(|(recording, _)| recording);
     // A viewer that is gone need not be told.
     let _gone = match recording {
@@ -182,7 +160,7 @@ const fn offers(stage: &Stage, records: bool) -> fox::Topics {
 }
 
 /// A run that goes on: everybody sees the same moment.
-async fn live(run: &Run, mut line: Line, mut stream: Stream, records: bool) -> Result<(), Gone> {
+async fn live(run: &Run, mut line: Pinged, mut stream: Stream, records: bool) -> Result<(), Gone> {
     let (guest, mut session) = {
         let mut staging = run.staging();
         (staging.admit(), Session::new(&name(run), None, run.id().as_str(), offers(staging.stage(), records)))
@@ -192,34 +170,38 @@ async fn live(run: &Run, mut line: Line, mut stream: Stream, records: bool) -> R
     gone
 }
 
-async fn watch(run: &Run, line: &mut Line, stream: &mut Stream, session: &mut Session, guest: u64) -> Result<(), Gone> {
+async fn watch(
+    run: &Run,
+    line: &mut Pinged,
+    stream: &mut Stream,
+    session: &mut Session,
+    guest: u64,
+) -> Result<(), Gone> {
     let mut early = greeted(line, stream).await?;
     line.put_all(session.opening()).await?;
     let mut news = run.news();
     let mut beat = tokio::time::interval(Duration::from_secs(1));
-    let (mut shown, mut sent_at, mut messages, mut over) = (None, None::<Instant>, 0, false);
+    let (mut shown, mut sent_at, mut over) = (None, None::<Instant>, false);
     let mut told = {
         let mut staging = run.staging();
-        staging.happened(&run.events(0));
+        staging.catch_up(|seen| run.events(seen));
         staging.seen()
     };
     loop {
-        news.borrow_and_update();
-        let happened = {
-            let mut staging = run.staging();
-            let seen = staging.seen();
-            let new = run.events(seen);
-            if !new.is_empty() {
-                staging.happened(&run.events(0));
+        let new = news.borrow_and_update().clone();
+        if new.events > told {
+            let happened = {
+                let mut staging = run.staging();
+                staging.catch_up(|seen| run.events(seen));
+                let happened = staging.events(told);
+                told = staging.seen();
+                happened
+            };
+            for messages in happened {
+                line.put_all(given(session, &messages)).await?;
             }
-            let happened = staging.events(told);
-            told = staging.seen();
-            happened
-        };
-        for messages in happened {
-            line.put_all(given(session, &messages)).await?;
         }
-        let newest = run.newest().filter(|newest| shown != Some(newest.number) && line.is_free());
+        let newest = new.newest.filter(|newest| shown != Some(newest.number) && line.is_free());
         let now = Instant::now();
         let due = newest.as_ref().map(|_| sent_at.map_or(now, |at| at + EVERY.mul_f64(EARLY)));
         if let Some(newest) = newest.filter(|_| due.is_some_and(|due| due <= now)) {
@@ -230,7 +212,7 @@ async fn watch(run: &Run, line: &mut Line, stream: &mut Stream, session: &mut Se
             line.ping().await?;
             continue;
         }
-        if run.phase().0 != Phase::Live && !over {
+        if new.over && !over {
             over = true;
             let text = "the run has ended; connect again to play its recording";
             line.put(Out::Text(protocol::status(Level::Info, text, Some("end")))).await?;
@@ -247,14 +229,12 @@ async fn watch(run: &Run, line: &mut Line, stream: &mut Stream, session: &mut Se
             message = stream.next() => came(line, message),
             () = tokio::time::sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => continue,
             _ = beat.tick() => {
-                messages = 0;
                 line.beat().await?;
                 continue;
             }
         };
-        messages += 1;
-        if matches!(came, Came::Leaves) || messages > MOST_MESSAGES {
-            return line.farewell().await;
+        if line.parts(&came).await {
+            return Ok(());
         }
         let heard = {
             let mut staging = run.staging();
@@ -270,7 +250,7 @@ async fn watch(run: &Run, line: &mut Line, stream: &mut Stream, session: &mut Se
 struct Player<'a> {
     run: &'a Run,
     recording: Arc<Recording>,
-    line: Line,
+    line: Pinged,
     stage: Stage,
     session: Session,
     eyes: Eyes,
@@ -282,11 +262,11 @@ struct Player<'a> {
 }
 
 impl<'a> Player<'a> {
-    fn new(run: &'a Run, recording: Arc<Recording>, line: Line, records: bool) -> Self {
+    fn new(run: &'a Run, recording: Arc<Recording>, line: Pinged, records: bool) -> Self {
         let stage = stage(&run.scene);
-        let end = SimTime::at_tick((recording.ticks() as u64).saturating_sub(1)).nanos();
+        let end = SimTime::of_last(recording.ticks() as u64).nanos();
         let session = Session::new(&name(run), Some((0, end)), run.id().as_str(), offers(&stage, records));
-        let eyes = Eyes::of(&run.scene);
+        let eyes = run.eyes();
         Self { run, recording, line, stage, session, eyes, at_s: 0.0, events: 0, shown: None }
     }
 
@@ -295,7 +275,7 @@ impl<'a> Player<'a> {
         self.line.put_all(self.session.opening()).await?;
         let mut step = tokio::time::interval(EVERY);
         step.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
-        let (mut before, mut messages, mut counted) = (Instant::now(), 0, Instant::now());
+        let mut before = Instant::now();
         loop {
             let came = tokio::select! {
                 biased;
@@ -309,12 +289,8 @@ impl<'a> Player<'a> {
                     continue;
                 }
             };
-            if counted.elapsed() > Duration::from_secs(1) {
-                (messages, counted) = (0, Instant::now());
-            }
-            messages += 1;
-            if matches!(came, Came::Leaves) || messages > MOST_MESSAGES {
-                return self.line.farewell().await;
+            if self.line.parts(&came).await {
+                return Ok(());
             }
             let heard = hear(&mut self.session, &came, &self.stage);
             self.line.put_all(heard.out).await?;
@@ -344,7 +320,7 @@ impl<'a> Player<'a> {
 
     async fn jump(&mut self, to: SimTime) -> Result<(), Gone> {
         self.stage.rewind();
-        self.eyes = Eyes::of(&self.run.scene);
+        self.eyes = self.run.eyes();
         (self.at_s, self.events, self.shown) = (to.secs(), 0, None);
         self.happened(false).await?;
         self.show(self.session.wanted()).await?;
@@ -359,9 +335,7 @@ impl<'a> Player<'a> {
         while let Some(event) = recording.events.get(self.events).filter(|event| event.time.secs() <= self.at_s + 1e-9)
         {
             self.events += 1;
-            if let socrates_model::EventKind::Door { door, open } = &event.kind {
-                self.eyes.door(door, *open);
-            }
+            self.eyes.happened(event);
             let messages = self.stage.event(event, &words(&event.kind), wanted);
             self.line.put_all(given(&self.session, &messages)).await?;
         }

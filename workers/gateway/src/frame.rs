@@ -74,12 +74,6 @@ fn heading(yaw: f64) -> i16 {
     share.clamp(-32_768.0, 32_767.0) as i16
 }
 
-/// Whether an agent is there, at a place.
-#[must_use]
-pub fn is_there(state: &AgentState, absent: Option<u16>) -> bool {
-    state.x.is_finite() && state.y.is_finite() && state.yaw.is_finite() && absent != Some(state.leaf())
-}
-
 /// Writes the frame of a tick. `number` counts the frames of a stream; `absent` is the leaf of those who are not there.
 #[must_use]
 pub fn encode(number: u32, time_s: f64, states: &[AgentState], absent: Option<u16>, sights: &Sights) -> Vec<u8> {
@@ -96,7 +90,7 @@ pub fn encode(number: u32, time_s: f64, states: &[AgentState], absent: Option<u1
     for (state, sees) in states.iter().zip(looked) {
         let leaf = u8::try_from(state.leaf()).map_or(NO_LEAF, u16::from);
         let gesture = u16::try_from((state.flags >> 8) & 0xf).unwrap_or(0);
-        let there = if is_there(state, absent) { THERE } else { 0 };
+        let there = if state.is_there(absent) { THERE } else { 0 };
         let flags = gesture | there | if sees { SEES } else { 0 } | (leaf << 8);
         #[expect(clippy::cast_possible_truncation, reason = "a picture needs no more than seven digits")]
         let (x, y) = (state.x as f32, state.y as f32);

@@ -1,4 +1,4 @@
-//! Who may come in: hosts, origins, the token, and how many at once. Pure, but for the count.
+//! The rules of the door: hosts, origins, the token, and how many at once. Pure, but for the count.
 //!
 //! Even on loopback, a page of a stranger that is open in somebody's browser can reach this port: its origin tells it apart, and a name that
 //! a stranger's server points at this machine is told apart by the host it was asked for.

@@ -26,12 +26,32 @@ const READ_BYTES: usize = 1024;
 pub struct Shared {
     /// The runs.
     pub hub: Hub,
-    /// Who may come in.
+    /// What is let in.
     pub rules: Arc<Rules>,
-    /// Pages that may show ours in a frame, as the policy names them; empty for none.
-    pub ancestors: String,
+    /// What a page of ours may load, and which pages may show it.
+    pub policy: Policy,
     /// Whether answers go over TLS.
     pub tls: bool,
+}
+
+/// What a browser is told of our pages: they load nothing from elsewhere, and only these pages may show them.
+#[derive(Debug, Clone)]
+pub struct Policy(HeaderValue);
+
+impl Policy {
+    /// The policy that lets these pages of others show ours in a frame.
+    ///
+    /// # Errors
+    /// Where one of them cannot stand in a header, in a sentence.
+    pub fn letting(frames: &[String]) -> Result<Self, String> {
+        let frames = frames.join(" ");
+        let policy = format!(
+            "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; \
+             frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'self' {frames}"
+        );
+        let value = HeaderValue::from_str(policy.trim_end());
+        value.map(Self).map_err(|_why| format!("`{}` is no list of origins", frames.escape_debug()))
+    }
 }
 
 /// The routes of a gateway.
@@ -84,20 +104,14 @@ async fn guarded(State(shared): State<Arc<Shared>>, request: Request, next: Next
     }
     let reader = shared.rules.reader(request.headers()).map(str::to_owned);
     let mut answer = next.run(request).await;
-    let ancestors = if shared.ancestors.is_empty() { "'none'" } else { &shared.ancestors };
-    let policy = format!(
-        "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; \
-         frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'self' {}",
-        if ancestors == "'none'" { "" } else { ancestors }
-    );
     let headers = answer.headers_mut();
+    // A drawing has a stricter policy of its own.
+    headers.entry(header::CONTENT_SECURITY_POLICY).or_insert_with(|| shared.policy.0.clone());
     let mut put = |name: header::HeaderName, value: &str| {
         if let Ok(value) = HeaderValue::from_str(value) {
-            // A drawing has a stricter policy of its own.
-            headers.entry(name).or_insert(value);
+            headers.insert(name, value);
         }
     };
-    put(header::CONTENT_SECURITY_POLICY, policy.trim_end());
     put(header::X_CONTENT_TYPE_OPTIONS, "nosniff");
     put(header::REFERRER_POLICY, "no-referrer");
     if let Some(origin) = reader {
@@ -225,7 +239,7 @@ async fn floor(State(shared): State<Arc<Shared>>, Path(id): Path<String>) -> Res
     let run = run(&shared, &id).await?;
     // A drawing cannot run anything, whatever a name in it says.
     let policy = "default-src 'none'; style-src 'unsafe-inline'";
-    let svg = run.scene.floor().svg().to_owned();
+    let svg = run.floor.svg().to_owned();
     Ok(([(header::CONTENT_TYPE, "image/svg+xml"), (header::CONTENT_SECURITY_POLICY, policy)], svg).into_response())
 }
 
@@ -267,11 +281,11 @@ async fn recording(
     headers: HeaderMap,
 ) -> Result<Response, Response> {
     let run = run(&shared, &id).await?;
-    let Some((recording, file)) = run.recording() else {
+    let (Some((_, file)), Some(digest)) = (run.recording(), run.phase().1.recording) else {
         let (error, hint) = ("the run goes on, or its recording is not here yet", "ask again when it has ended");
         return Err(refused(StatusCode::NOT_FOUND, error, hint));
     };
-    Ok(files::answer(&method, &headers, &recording.hash().to_string(), file).map(Body::from))
+    Ok(files::answer(&method, &headers, &digest.to_string(), file).map(Body::from))
 }
 
 async fn socket(

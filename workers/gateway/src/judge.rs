@@ -53,7 +53,7 @@ impl Papers {
             goal: None,
             groups: &[],
         });
-        standing(&report, SimTime::at_tick((recording.ticks() as u64).saturating_sub(1)).secs(), last)
+        standing(&report, SimTime::of_last(recording.ticks() as u64).secs(), last)
     }
 }
 

@@ -32,6 +32,7 @@ pub mod page;
 pub mod run;
 pub mod scene;
 pub mod server;
+mod socket;
 pub mod staging;
 pub mod words;
 
@@ -43,7 +44,7 @@ use tokio::net::TcpListener;
 use tokio_rustls::TlsAcceptor;
 
 use crate::guard::Rules;
-use crate::http::{Shared, routes};
+use crate::http::{Policy, Shared, routes};
 use crate::hub::{Hub, Shelf};
 
 /// A certificate chain with its key.
@@ -77,12 +78,12 @@ impl Tls {
 }
 
 /// A gateway that is to be opened.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Gateway {
-    /// Who may come in.
+    /// What is let in.
     pub rules: Rules,
-    /// Pages of others that may show ours in a frame.
-    pub frames: Vec<String>,
+    /// What a page of ours may load, and which pages may show it.
+    pub policy: Policy,
     /// Certificate and key; none for plain HTTP.
     pub tls: Option<Tls>,
 }
@@ -94,7 +95,7 @@ impl Gateway {
         let shared = Arc::new(Shared {
             hub: Hub::new(shelves),
             rules: Arc::clone(&rules),
-            ancestors: self.frames.join(" "),
+            policy: self.policy,
             tls: self.tls.is_some(),
         });
         server::serve(listener, routes(shared), rules, self.tls.map(|tls| tls.0)).await;

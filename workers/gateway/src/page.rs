@@ -8,33 +8,22 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::extract::ws::{CloseFrame, Message, Utf8Bytes, WebSocket, close_code};
-use futures_util::stream::SplitSink;
-use futures_util::{SinkExt as _, StreamExt as _};
+use futures_util::StreamExt as _;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::time::Instant;
 
 use crate::run::{News, Run};
+use crate::socket::{EARLY, Gone, Line, PING, WINDOW};
 
 /// Subprotocol of the socket.
 pub const PROTOCOL: &str = "socrates.live.v1";
 /// Bytes of a message from the page, at most.
 pub const MOST_BYTES: usize = 4 * 1024;
-/// Frames on their way, at most.
-const WINDOW: usize = 2;
 /// Frames a second where the page names no rate, and the most that it can name.
 const RATE_HZ: (f64, f64) = (20.0, 60.0);
-/// Share of the time from one frame to the next after which the next may go.
-const EARLY: f64 = 0.8;
-/// Messages that the page may send in a second.
-const MOST_MESSAGES: u32 = 200;
 /// How often the page is told how late it is.
 const LAG: Duration = Duration::from_secs(1);
-/// A page that takes nothing for so long is let go.
-const FROZEN: Duration = Duration::from_secs(30);
-/// A page that has nothing to take is asked for a sign of life so often.
-const PING: Duration = Duration::from_secs(5);
-
 /// What the page says in words.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "op", rename_all = "snake_case", deny_unknown_fields)]
@@ -79,7 +68,7 @@ fn heard(message: Message) -> Result<Heard, String> {
 /// One page.
 struct Viewer {
     run: Arc<Run>,
-    sink: SplitSink<WebSocket, Message>,
+    line: Line,
     every: Duration,
     /// What is new as of the last look.
     now: News,
@@ -91,7 +80,6 @@ struct Viewer {
     on_their_way: VecDeque<(u32, Instant)>,
     skipped: u64,
     lags_ms: Vec<f64>,
-    moved_at: Instant,
 }
 
 /// Talks to a page until it leaves, is frozen, or says what is not understood.
@@ -100,7 +88,7 @@ pub async fn talk(socket: WebSocket, run: Arc<Run>) {
     let mut news = run.news();
     let mut viewer = Viewer {
         run,
-        sink,
+        line: Line::new(sink),
         every: Duration::from_secs_f64(1.0 / RATE_HZ.0),
         now: News::default(),
         events: 0,
@@ -111,15 +99,13 @@ pub async fn talk(socket: WebSocket, run: Arc<Run>) {
         on_their_way: VecDeque::new(),
         skipped: 0,
         lags_ms: Vec::new(),
-        moved_at: Instant::now(),
     };
     let scene = format!("{{\"op\":\"scene\",\"scene\":{}}}", viewer.run.scene_json());
-    if viewer.send(Message::Text(scene.into())).await.is_err() {
+    if viewer.line.send(Message::Text(scene.into())).await.is_err() {
         return;
     }
     viewer.now = news.borrow_and_update().clone();
     let mut lag = tokio::time::interval(LAG);
-    let mut messages = 0;
     loop {
         if viewer.catch_up().await.is_err() {
             return;
@@ -139,43 +125,27 @@ pub async fn talk(socket: WebSocket, run: Arc<Run>) {
             },
             () = tokio::time::sleep_until(due.unwrap_or_else(Instant::now)), if due.is_some() => continue,
             _ = lag.tick() => {
-                messages = 0;
                 if viewer.beat().await.is_err() {
                     return;
                 }
                 continue;
             }
         };
-        messages += 1;
-        let heard = if messages > MOST_MESSAGES { Err("too many messages in a second".to_owned()) } else { heard };
+        let too_much = viewer.line.says_too_much();
+        let heard = if too_much { Err("too many messages in a second".to_owned()) } else { heard };
         match heard {
             Ok(Heard::Drawn(number)) => viewer.drawn(number),
             Ok(Heard::Rate(hz)) => viewer.every = Duration::from_secs_f64(1.0 / hz),
-            Ok(Heard::Life) => viewer.moved_at = Instant::now(),
-            Ok(Heard::Leaves) => return viewer.farewell().await,
+            Ok(Heard::Life) => viewer.line.moved(),
+            Ok(Heard::Leaves) => return viewer.line.farewell().await,
             Err(why) => return viewer.part(&why).await,
         }
     }
 }
 
-/// The page is gone.
-struct Gone;
-
 impl Viewer {
-    async fn send(&mut self, message: Message) -> Result<(), Gone> {
-        match tokio::time::timeout(FROZEN, self.sink.send(message)).await {
-            Ok(Ok(())) => Ok(()),
-            Ok(Err(_)) | Err(_) => Err(Gone),
-        }
-    }
-
     async fn say(&mut self, what: &Value) -> Result<(), Gone> {
-        self.send(Message::Text(Utf8Bytes::from(what.to_string()))).await
-    }
-
-    /// Answers its farewell.
-    async fn farewell(mut self) {
-        drop(tokio::time::timeout(FROZEN, self.sink.close()).await);
+        self.line.send(Message::Text(Utf8Bytes::from(what.to_string()))).await
     }
 
     /// Says why it is let go, and lets it go.
@@ -183,7 +153,7 @@ impl Viewer {
         let reason: String = why.chars().take(100).collect();
         let frame = CloseFrame { code: close_code::POLICY, reason: Utf8Bytes::from(reason) };
         drop(self.say(&json!({ "op": "status", "level": "error", "text": why })).await);
-        drop(self.send(Message::Close(Some(frame))).await);
+        drop(self.line.send(Message::Close(Some(frame))).await);
     }
 
     /// Sends what is new: events, how it stands, the newest frame where it is due, and the end.
@@ -233,11 +203,11 @@ impl Viewer {
         self.last_frame = Some(number);
         self.sent_at = Some(now);
         self.on_their_way.push_back((number, now));
-        self.send(Message::Binary(bytes)).await
+        self.line.send(Message::Binary(bytes)).await
     }
 
     fn drawn(&mut self, number: u32) {
-        self.moved_at = Instant::now();
+        self.line.moved();
         while let Some((sent, at)) = self.on_their_way.front().copied() {
             // An acknowledgement is for all before it as well.
             if number.wrapping_sub(sent) > u32::MAX / 2 {
@@ -250,12 +220,8 @@ impl Viewer {
 
     /// Tells how late the page is; lets go of one that is frozen.
     async fn beat(&mut self) -> Result<(), Gone> {
-        let idle = self.moved_at.elapsed();
-        if idle > FROZEN {
-            return Err(Gone);
-        }
-        if idle > PING {
-            self.send(Message::Ping(Vec::new().into())).await?;
+        if self.line.idle()? > PING {
+            self.line.send(Message::Ping(Vec::new().into())).await?;
         }
         self.lags_ms.sort_by(f64::total_cmp);
         let Some(middle) = self.lags_ms.get(self.lags_ms.len() / 2).copied() else { return Ok(()) };

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use async_trait::async_trait;
 use bytes::Bytes;
 use serde_json::{Value, json};
+use socrates_draw::live_floor::LiveFloor;
 use socrates_model::live::LiveEnd;
 use socrates_model::{AgentState, Event, EventKind, Recording, RunId, SimTime};
 use tokio::sync::watch;
@@ -108,8 +109,12 @@ pub struct News {
 pub struct Run {
     /// What it is.
     pub scene: Scene,
+    /// The drawing of its floor.
+    pub floor: LiveFloor,
     /// What the page is told of the scene, written once: that of a crowd is long.
     told: String,
+    /// Eyes before the first tick.
+    eyes: Eyes,
     state: Mutex<State>,
     news: watch::Sender<News>,
     staging: Mutex<Staging>,
@@ -120,8 +125,9 @@ impl Run {
     /// A run that has not begun yet; `older` knows its ticks.
     #[must_use]
     pub fn live(scene: Scene, older: Box<dyn Ticks>) -> Self {
+        let eyes = Eyes::of(&scene);
         let state = State {
-            eyes: Eyes::of(&scene),
+            eyes: eyes.clone(),
             newest: None,
             ticks: 0,
             events: Vec::new(),
@@ -133,8 +139,10 @@ impl Run {
             file: None,
         };
         let staging = Mutex::new(Staging::of(&scene));
-        let told = scene.json().to_string();
-        Self { scene, told, state: Mutex::new(state), news: watch::Sender::new(News::default()), staging, older }
+        let floor = LiveFloor::of(&scene.location);
+        let told = scene.json(&floor).to_string();
+        let (state, news) = (Mutex::new(state), watch::Sender::new(News::default()));
+        Self { scene, floor, told, eyes, state, news, staging, older }
     }
 
     /// A run that was recorded, with its file.
@@ -155,6 +163,12 @@ impl Run {
 
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Eyes that have seen nothing yet.
+    #[must_use]
+    pub fn eyes(&self) -> Eyes {
+        self.eyes.clone()
     }
 
     /// What its viewers in Foxglove share.
@@ -214,9 +228,7 @@ impl Run {
     pub fn event(&self, event: Event) {
         {
             let mut state = self.state();
-            if let EventKind::Door { door, open } = &event.kind {
-                state.eyes.door(door, *open);
-            }
+            state.eyes.happened(&event);
             state.events.push(event);
         }
         self.tell();
@@ -287,7 +299,7 @@ impl Run {
     /// Simulated time so far, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        SimTime::at_tick(self.state().ticks.saturating_sub(1)).secs()
+        SimTime::of_last(self.state().ticks).secs()
     }
 
     /// What the page is told first, as JSON: the scene, whether the run goes on, and how many ticks there are.
@@ -309,7 +321,7 @@ impl Run {
         json!({
             "run": header.run, "state": state.phase.word(), "planner": header.planner, "seed": header.seed,
             "title": self.scene.title, "location": self.scene.location.name,
-            "time_s": SimTime::at_tick(state.ticks.saturating_sub(1)).secs(),
+            "time_s": SimTime::of_last(state.ticks).secs(),
             "agents": header.agents.len(), "verdict": state.standing.verdict,
         })
     }
@@ -341,7 +353,7 @@ impl Run {
 
     /// Frames of the ticks from one to another, every so many, one after the other, at most [`ANSWER_BYTES`].
     pub async fn frames(&self, from: u64, to: u64, every: u64) -> Vec<u8> {
-        let (every, mut eyes) = (every.max(1), Eyes::of(&self.scene));
+        let (every, mut eyes) = (every.max(1), self.eyes());
         let (recording, events) = {
             let state = self.state();
             (state.recording.clone(), state.events.clone())
@@ -355,9 +367,7 @@ impl Run {
         for (number, states) in (0..).zip(&found) {
             let Some(tick) = states.first().map(|state| state.tick) else { continue };
             while let Some(event) = doors.next_if(|event| event.time.tick() <= tick) {
-                if let EventKind::Door { door, open } = &event.kind {
-                    eyes.door(door, *open);
-                }
+                eyes.happened(event);
             }
             bytes.extend(self.bytes(number, tick, states, &eyes.look(states)));
             if bytes.len() >= ANSWER_BYTES {
@@ -368,9 +378,16 @@ impl Run {
     }
 }
 
+/// Ticks of so many agents that fill an answer.
+#[must_use]
+pub const fn ticks_of_an_answer(agents: usize) -> usize {
+    let agents = if agents == 0 { 1 } else { agents };
+    ANSWER_BYTES / (agents * crate::frame::RECORD_BYTES) + 1
+}
+
 /// Ticks of a recording, as many as an answer can hold.
 fn some_ticks(recording: &Recording, from: u64, to: u64, every: u64) -> Vec<Vec<AgentState>> {
-    let most = ANSWER_BYTES / (recording.header.agents.len().max(1) * crate::frame::RECORD_BYTES) + 1;
+    let most = ticks_of_an_answer(recording.header.agents.len());
     let last = to.min((recording.ticks() as u64).saturating_sub(1));
     let step = usize::try_from(every).unwrap_or(usize::MAX);
     let wanted = (from..=last).step_by(step).take(most);

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 use socrates_draw::live_floor::LiveFloor;
 use socrates_engine::{Disc, Floor, in_field_of_view, scan};
-use socrates_model::live::LiveDoor;
-use socrates_model::{AgentState, Location, Point, RecordingHeader, Vector};
+use socrates_model::live::{LiveDoor, LiveScene};
+use socrates_model::{AgentState, Event, EventKind, Location, Point, RecordingHeader, Vector};
 
-use crate::frame::{Sights, is_there};
+use crate::frame::Sights;
 
 /// More agents than this are shown without sight and lidar: a crowd hides both.
 const CROWD: usize = 200;
@@ -35,17 +35,26 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The floor as a drawing.
+    /// The scene that a run tells, of this title in this place.
     #[must_use]
-    pub fn floor(&self) -> LiveFloor {
-        LiveFloor::of(&self.location)
+    pub fn of(header: RecordingHeader, title: String, location: Location, told: &LiveScene) -> Self {
+        let at = |[x, y]: &[f64; 2]| Point::new(*x, *y);
+        Self {
+            header,
+            title,
+            location,
+            doors: told.doors.clone(),
+            robot: told.robot.as_ref().map(|robot| (robot.name.clone(), robot.radius_m, robot.lidar_range_m)),
+            goal: told.goal.as_ref().map(at),
+            way: told.way.iter().map(at).collect(),
+            pace: told.pace,
+        }
     }
 
-    /// What the page is told of it that never changes.
+    /// What the page is told of it that never changes, with the drawing of its floor.
     #[must_use]
-    pub fn json(&self) -> Value {
+    pub fn json(&self, floor: &LiveFloor) -> Value {
         let header = &self.header;
-        let floor = self.floor();
         let at = |point: &Point| [point.x, point.y];
         let agents: Vec<Value> = header
             .agents
@@ -75,6 +84,7 @@ impl Scene {
 }
 
 /// Looks at a run from the robot's and everybody's eyes, as the engine does.
+#[derive(Clone)]
 pub struct Eyes {
     floor: Floor,
     doors: BTreeMap<String, (Point, Point, bool)>,
@@ -107,12 +117,13 @@ impl Eyes {
         self.floor.close(shut.map(|(from, to, _)| (*from, *to)).collect());
     }
 
-    /// A door opens or shuts.
-    pub fn door(&mut self, id: &str, open: bool) {
-        if let Some(door) = self.doors.get_mut(id)
-            && door.2 != open
+    /// Takes an event: a door that opens or shuts is seen so.
+    pub fn happened(&mut self, event: &Event) {
+        let EventKind::Door { door, open } = &event.kind else { return };
+        if let Some(door) = self.doors.get_mut(door)
+            && door.2 != *open
         {
-            door.2 = open;
+            door.2 = *open;
             self.shut();
         }
     }
@@ -120,7 +131,7 @@ impl Eyes {
     /// What is seen at a tick.
     #[must_use]
     pub fn look(&self, states: &[AgentState]) -> Sights {
-        let robot = states.iter().find(|state| state.agent == 0 && is_there(state, self.absent));
+        let robot = states.iter().find(|state| state.agent == 0 && state.is_there(self.absent));
         let (Some(robot), Some(range_m)) = (robot, self.range_m) else { return Sights::default() };
         if states.len() > CROWD {
             return Sights::default();
@@ -129,13 +140,13 @@ impl Eyes {
         let sees = |state: &AgentState| {
             let heading = Vector::new(libm::cos(state.yaw), libm::sin(state.yaw));
             state.agent != 0
-                && is_there(state, self.absent)
+                && state.is_there(self.absent)
                 && in_field_of_view(&heading, &(at - state.point()))
                 && self.floor.sees(&state.point(), &at)
         };
         let disc = |(state, radius_m): (&AgentState, &f64)| Disc { center: state.point(), radius_m: *radius_m };
         let others = states.iter().zip(&self.radius_m).filter(|(state, _)| state.agent != 0);
-        let discs: Vec<Disc> = others.filter(|(state, _)| is_there(state, self.absent)).map(disc).collect();
+        let discs: Vec<Disc> = others.filter(|(state, _)| state.is_there(self.absent)).map(disc).collect();
         let pose = socrates_model::Pose::new(robot.x, robot.y, robot.yaw);
         Sights { sees: states.iter().map(sees).collect(), scan: scan(&self.floor, &pose, &discs, range_m), range_m }
     }

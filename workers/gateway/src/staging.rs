@@ -89,11 +89,12 @@ impl Staging {
         self.wanted.values().flat_map(|topics| topics.iter()).collect()
     }
 
-    /// Takes the events that it has not seen. Log lines are encoded whether anybody wants them or not: they are few.
-    pub fn happened(&mut self, all: &[Event]) {
+    /// Takes the events that it has not seen: `from` gives those from a number on. Log lines are encoded whether anybody wants them or
+    /// not: they are few.
+    pub fn catch_up(&mut self, from: impl FnOnce(usize) -> Vec<Event>) {
         let wanted = self.all_wanted().with(crate::fox::Topic::Events);
-        for event in all.iter().skip(self.events.len()) {
-            let messages = self.stage.event(event, &words(&event.kind), wanted);
+        for event in from(self.events.len()) {
+            let messages = self.stage.event(&event, &words(&event.kind), wanted);
             self.events.push(Arc::new(messages));
         }
     }

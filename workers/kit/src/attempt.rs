@@ -151,7 +151,8 @@ async fn input(worker: &Worker, grant: &Grant, role: Role, digest: Digest) -> Re
 }
 
 /// An error with its causes in one line.
-fn chain(error: &dyn std::error::Error) -> String {
+#[must_use]
+pub fn chain(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();
     while let Some(cause) = source {

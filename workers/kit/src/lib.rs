@@ -34,6 +34,7 @@ mod config;
 pub use config::{FaultPlan, Stop, WorkerConfig};
 
 mod attempt;
+pub use attempt::chain;
 mod beat;
 mod held;
 mod messages;

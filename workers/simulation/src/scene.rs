@@ -15,23 +15,31 @@ use socrates_model::request::Waypoints;
 
 use crate::ways::waypoints;
 
-/// The scene of a run that this job begins now, with or without a robot.
+/// The scene of a run that this job begins now, with or without a robot, and the cells of its map.
 #[cfg(feature = "mcap")]
-pub(crate) fn scene(setup: &Setup, has_robot: bool, job: &JobSpec, pace: Pace) -> LiveScene {
-    LiveScene {
+pub(crate) fn scene(setup: &Setup, has_robot: bool, job: &JobSpec, pace: Pace) -> (LiveScene, Vec<u8>) {
+    let cells = map_cells(&setup.location.grid);
+    let scene = LiveScene {
         pace: match pace {
             Pace::Max => None,
             Pace::Times(times) => Some(times),
         },
         started_ms: socrates_link::wall_ms(),
         inputs: job.inputs.clone(),
-        ..live_scene(&setup.location, &setup.paths, has_robot.then_some(&setup.robot), setup.waypoints)
-    }
+        ..live_scene(&setup.location, &cells, &setup.paths, has_robot.then_some(&setup.robot), setup.waypoints)
+    };
+    (scene, cells)
 }
 
-/// What viewers are told of a place, of a robot where there is one, and of its way.
+/// What viewers are told of a place with a map of these cells, of a robot where there is one, and of its way.
 #[must_use]
-pub fn live_scene(location: &Location, paths: &Paths, robot: Option<&RobotModel>, which: Waypoints) -> LiveScene {
+pub fn live_scene(
+    location: &Location,
+    cells: &[u8],
+    paths: &Paths,
+    robot: Option<&RobotModel>,
+    which: Waypoints,
+) -> LiveScene {
     let at = |point: &Point| [point.x, point.y];
     let way = location.graph.polyline(&paths.robot);
     let points = waypoints(&location.graph, &paths.robot, which);
@@ -40,7 +48,7 @@ pub fn live_scene(location: &Location, paths: &Paths, robot: Option<&RobotModel>
         door: MissionDoor { id: door.id.clone(), from: at(&door.from), to: at(&door.to) },
         open: door.opens == DoorOpens::Always,
     };
-    let map = MissionMap::of(&location.grid, &map_cells(&location.grid));
+    let map = MissionMap::of(&location.grid, cells);
     LiveScene {
         location: Some(LivePlace { name: location.name.clone(), map }),
         doors: location.doors.iter().map(door).collect(),

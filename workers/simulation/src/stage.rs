@@ -174,7 +174,7 @@ async fn viewers(
     }
     if bus {
         let has_robot = job.spec().run().is_none_or(|run| !run.planner.is_no_robot());
-        let told = (scene(setup, has_robot, job.spec(), pace), Some(&setup.location.grid));
+        let told = scene(setup, has_robot, job.spec(), pace);
         match LiveSink::open(Arc::clone(&job.live_bus()), run, told, tape.clone(), &stage.linger).await {
             Ok(sink) => sinks.add(Box::new(sink)),
             // Viewers never decide about a run.

@@ -1,8 +1,9 @@
 //! Where `view` finds runs: on the bus of a folder while there is one, and in its bundles.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use async_trait::async_trait;
 use bytes::Bytes;
@@ -13,10 +14,12 @@ use socrates_gateway::judge::standing;
 use socrates_gateway::run::{Run, Standing};
 use socrates_gateway::scene::Scene;
 use socrates_link::Bus;
-use socrates_model::{Point, RunId, SimTime};
+use socrates_model::driver::map_cells;
+use socrates_model::{RunId, SimTime};
 use socrates_simulation::scene::live_scene;
 use tokio::task::JoinHandle;
 
+use crate::batch;
 use crate::bundle::{self, Manifest};
 use crate::exit::Complaint;
 use crate::layout;
@@ -82,9 +85,14 @@ struct Joined {
     air: Arc<Air>,
 }
 
+/// Names of a bundle's runs, with what the list says of them.
+type Lines = Arc<Vec<(RunId, Value)>>;
+
 /// The runs of a place.
 pub(super) struct Folder {
     place: Place,
+    /// Bundles whose manifest was read, and when that was written.
+    known: Mutex<BTreeMap<PathBuf, (SystemTime, Lines)>>,
     joined: Mutex<Option<Joined>>,
     looking: Mutex<Option<JoinHandle<()>>>,
 }
@@ -92,7 +100,8 @@ pub(super) struct Folder {
 impl Folder {
     /// Looks at the place from now on: a bus that comes, goes, or is another one is joined.
     pub(super) fn watch(place: Place) -> Arc<Self> {
-        let folder = Arc::new(Self { place, joined: Mutex::default(), looking: Mutex::default() });
+        let folder =
+            Arc::new(Self { place, known: Mutex::default(), joined: Mutex::default(), looking: Mutex::default() });
         let looks = Arc::downgrade(&folder);
         let looking = tokio::spawn(async move {
             let mut look = tokio::time::interval(LOOK);
@@ -143,27 +152,35 @@ impl Folder {
         }
     }
 
-    /// The finished bundles of the folder, the folder itself among them.
-    fn bundles(&self) -> Vec<(PathBuf, Manifest)> {
+    /// The finished bundles of the folder, the folder itself among them, with their runs.
+    fn bundles(&self) -> Vec<(PathBuf, Lines)> {
         let Some(folder) = self.place.folder() else { return Vec::new() };
-        if let Some(manifest) = bundle::manifest(folder) {
-            return vec![(folder.to_path_buf(), manifest)];
+        if let Some(lines) = self.lines(folder) {
+            return vec![(folder.to_path_buf(), lines)];
         }
-        let mut dirs: Vec<PathBuf> = std::fs::read_dir(folder)
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| bundle::is_bundle(path))
-            .take(LISTED)
-            .collect();
-        dirs.sort();
-        dirs.into_iter().filter_map(|dir| bundle::manifest(&dir).map(|manifest| (dir, manifest))).collect()
+        let names = batch::bundles(folder).unwrap_or_default();
+        let dirs = names.into_iter().take(LISTED).map(|name| folder.join(name));
+        dirs.filter_map(|dir| self.lines(&dir).map(|lines| (dir, lines))).collect()
+    }
+
+    /// The runs of a bundle; its manifest is read once, as long as nobody writes it anew: pages ask for the list again and again.
+    fn lines(&self, dir: &Path) -> Option<Lines> {
+        let written = std::fs::metadata(dir.join(layout::MANIFEST.path)).ok()?.modified().ok()?;
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((at, lines)) = known.get(dir)
+            && *at == written
+        {
+            return Some(Arc::clone(lines));
+        }
+        let lines = Arc::new(runs_of(&bundle::manifest(dir)?));
+        known.insert(dir.to_path_buf(), (written, Arc::clone(&lines)));
+        Some(lines)
     }
 
     /// The run of a bundle, read whole.
     fn kept(&self, name: &RunId) -> Result<Option<Run>, String> {
-        let found = self.bundles().into_iter().find_map(|(dir, manifest)| {
-            let place = runs_of(&manifest).into_iter().position(|(run, ..)| run == *name)?;
+        let found = self.bundles().into_iter().find_map(|(dir, lines)| {
+            let place = lines.iter().position(|(run, _)| run == name)?;
             Some((dir, place))
         });
         let Some((dir, place)) = found else { return Ok(None) };
@@ -173,19 +190,10 @@ impl Folder {
         let path = entry.map(|entry| dir.join(layout::RECORDINGS.of(&entry.run()))).unwrap_or_default();
         let file = std::fs::read(&path).map_err(|why| format!("cannot read `{}`: {why}", path.display()))?;
         let robot = (!recording.header.planner.is_no_robot()).then_some(&bundle.request.robot.model);
-        let told = live_scene(&bundle.location, &bundle.paths, robot, bundle.request.robot.waypoints);
-        let at = |[x, y]: &[f64; 2]| Point::new(*x, *y);
-        let scene = Scene {
-            header: recording.header.clone(),
-            title: bundle.manifest.scenario.clone(),
-            robot: told.robot.as_ref().map(|robot| (robot.name.clone(), robot.radius_m, robot.lidar_range_m)),
-            goal: told.goal.as_ref().map(at),
-            way: told.way.iter().map(at).collect(),
-            doors: told.doors,
-            location: bundle.location,
-            pace: None,
-        };
-        let time_s = SimTime::at_tick((recording.ticks() as u64).saturating_sub(1)).secs();
+        let cells = map_cells(&bundle.location.grid);
+        let told = live_scene(&bundle.location, &cells, &bundle.paths, robot, bundle.request.robot.waypoints);
+        let scene = Scene::of(recording.header.clone(), bundle.manifest.scenario, bundle.location, &told);
+        let time_s = SimTime::of_last(recording.ticks() as u64).secs();
         let standing: Standing = standing(&report, time_s, true);
         Ok(Some(Run::kept(scene, recording, Bytes::from(file), standing)))
     }
@@ -213,7 +221,7 @@ impl Shelf for Runs {
     async fn list(&self) -> Vec<(RunId, Value)> {
         let folder = Arc::clone(&self.0);
         let kept = tokio::task::spawn_blocking(move || {
-            folder.bundles().iter().flat_map(|(_, manifest)| runs_of(manifest)).collect::<Vec<_>>()
+            folder.bundles().iter().flat_map(|(_, lines)| lines.to_vec()).collect::<Vec<_>>()
         });
         let mut lines = kept.await.unwrap_or_default();
         if let Some(air) = self.0.air() {

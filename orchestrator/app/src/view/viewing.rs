@@ -1,12 +1,11 @@
 //! The process that shows a run to viewers, as a child of the one that makes it: whatever becomes of it, the run goes on.
 
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
 use std::time::Duration;
 
 use serde_json::Value;
 use tokio::io::{AsyncBufReadExt as _, BufReader};
-use tokio::process::{Child, Command};
+use tokio::process::Child;
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
@@ -37,15 +36,9 @@ struct Start {
 
 impl Start {
     fn child(&self, listen: Option<&str>) -> Result<Child, Complaint> {
-        let mut command = Command::new(&self.program);
-        command.args(&self.args).args(listen.into_iter().flat_map(|address| ["--listen", address]));
-        command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::inherit())
-            .kill_on_drop(true)
-            // Ctrl-C reaches the parent alone, which then asks the child to leave.
-            .process_group(0)
+        child::command(&self.program)
+            .args(&self.args)
+            .args(listen.into_iter().flat_map(|address| ["--listen", address]))
             .spawn()
             .map_err(|why| ours(&format!("the process for viewers cannot be started: {why}")))
     }
@@ -101,20 +94,11 @@ impl Viewing {
     }
 }
 
-/// Waits until it is to end; a parent that is gone has ended too.
-async fn told(stopped: &mut watch::Receiver<bool>) {
-    drop(stopped.wait_for(|stopped| *stopped).await);
-}
-
 /// Keeps it alive at the same address.
 async fn keep(start: Start, mut child: Child, address: String, mut stopped: watch::Receiver<bool>) {
     for _start in 0..RESTARTS {
         let pipe = child.stdin.take();
-        let stops = tokio::select! {
-            _ = child.wait() => false,
-            () = told(&mut stopped) => true,
-        };
-        if stops {
+        if child::ended(&mut child, &mut stopped).await.is_none() {
             return child::leave(child, pipe, "view").await;
         }
         tracing::warn!("the process for viewers has ended; it is started again");

@@ -94,42 +94,27 @@ impl Options {
     }
 
     pub(super) fn values(&self) -> RunOptions {
-        let Self {
-            out,
-            seed,
-            seeds,
-            planner,
-            variants,
-            repeats,
-            author,
-            pace,
-            require,
-            workers,
-            inject,
-            driver,
-            ask,
-            view,
-        } = self.clone();
-        let pace = pace.unwrap_or_else(|| if view { "1" } else { "max" }.to_owned());
-        let require = match require {
+        let own = self.clone();
+        let pace = own.pace.unwrap_or_else(|| if own.view { "1" } else { "max" }.to_owned());
+        let require = match own.require {
             Require::Any => run_options::Require::Any,
             Require::Realised => run_options::Require::Realised,
         };
         RunOptions {
-            out,
-            seed,
-            seeds,
-            planner,
-            variants,
-            repeats,
-            author,
+            out: own.out,
+            seed: own.seed,
+            seeds: own.seeds,
+            planner: own.planner,
+            variants: own.variants,
+            repeats: own.repeats,
+            author: own.author,
             pace,
             require,
-            workers,
-            inject,
-            driver,
-            ask,
-            view,
+            workers: own.workers,
+            inject: own.inject,
+            driver: own.driver,
+            ask: own.ask,
+            view: own.view,
         }
     }
 }

@@ -117,7 +117,7 @@ impl Stage {
         let wanted = wanted & self.offers;
         self.time = frame.time;
         let absent = self.absent;
-        let is_there = |state: &&AgentState| absent.is_none_or(|leaf| state.leaf() != leaf);
+        let is_there = |state: &&AgentState| state.is_there(absent);
         let robot = self.state_of(ROBOT, frame.states).filter(is_there);
         self.look_around(robot, frame.states.iter().filter(is_there));
         let drawn = self.drawn();

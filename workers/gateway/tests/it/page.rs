@@ -66,6 +66,28 @@ async fn a_page_is_told_the_scene_first_and_gets_frames_events_and_the_end() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_crowd_of_whom_an_announcement_names_the_first_is_told_whole() {
+    guarded(async {
+        let bus = MemoryBus::new();
+        let mut run = Playing::begin(&bus, recording(1_500, 60)).await;
+        let doors = Doors::open(&bus, Rules::default()).await;
+        run.play(30);
+        let scene = doors.json("/run/hall.reference-1/scene").await;
+        assert_eq!(scene["agents"].as_array().unwrap().len(), 1_500);
+        let (status, _, past) = doors.ask("GET /run/hall.reference-1/frames?from=7&to=21&every=7", &[]).await;
+        let size = 32 + 1_500 * 16;
+        assert_eq!((status, past.len()), (200, 3 * size));
+        assert_eq!(past.chunks(size).map(tick).collect::<Vec<_>>(), [7, 14, 21]);
+        let mut page = doors.socket("/run/hall.reference-1/ws", PROTOCOL).await;
+        page.op("scene").await;
+        run.play(10);
+        assert_eq!(page.bytes().await.len(), size);
+        run.end();
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn two_frames_are_on_their_way_and_the_next_is_the_newest() {
     guarded(async {
         let bus = MemoryBus::new();

@@ -11,6 +11,7 @@ use serde_json::Value;
 use socrates_gateway::Gateway;
 use socrates_gateway::air::Air;
 use socrates_gateway::guard::Rules;
+use socrates_gateway::http::Policy;
 use socrates_gateway::hub::Shelf;
 use socrates_link::{AliveToken, Bus, LinkError, MemoryBus, Overflow, Presence, Publish, Qos, Serving, Subscription};
 use socrates_model::driver::{MissionDoor, MissionMap, map_cells};
@@ -168,7 +169,7 @@ impl Playing {
         let (tape, linger) = (Tape::default(), Linger::new(Duration::from_secs(30), 4));
         let run = recording.header.run.clone();
         let bus: Arc<dyn Bus> = Arc::new(bus.named("simulation"));
-        let mut sink = LiveSink::open(bus, &run, (scene, Some(&grid)), tape.clone(), &linger).await.unwrap();
+        let mut sink = LiveSink::open(bus, &run, (scene, map_cells(&grid)), tape.clone(), &linger).await.unwrap();
         let writer = Some(tape.record(&recording.header, None).unwrap());
         sink.announce(&recording.header);
         Self { recording, sink, writer, next: 0 }
@@ -222,7 +223,8 @@ impl Doors {
     pub(crate) async fn of(shelves: Vec<Box<dyn Shelf>>, rules: Rules, deeds: Arc<Deeds>) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let at = listener.local_addr().unwrap();
-        let task = tokio::spawn(Gateway { rules, ..Gateway::default() }.serve(listener, shelves));
+        let task =
+            tokio::spawn(Gateway { rules, policy: Policy::letting(&[]).unwrap(), tls: None }.serve(listener, shelves));
         Self { at, deeds, task }
     }
 
