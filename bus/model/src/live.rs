@@ -33,6 +33,9 @@ pub struct LiveMeta {
     pub ticks: u64,
     /// Events so far.
     pub events: u64,
+    /// The service of shared memory that has its ticks; none where it has none, as when another run of its name was there first.
+    #[serde(default)]
+    pub shared_memory: Option<String>,
     /// How it ended; none while it goes on.
     #[serde(default)]
     pub ended: Option<LiveEnd>,
@@ -82,7 +85,7 @@ pub struct LiveDoor {
 /// The doors of a run at a tick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LiveDoors {
-    /// The tick.
+    /// The tick at which one of them turned last; 0 before that.
     pub tick: u64,
     /// All of them, in the order of the scene.
     pub doors: Vec<LiveDoor>,

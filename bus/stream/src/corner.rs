@@ -36,7 +36,7 @@ impl ShmHost {
 
     /// None, with a line in the log that names the missing feature.
     #[must_use]
-    pub fn sink(&self, run: &socrates_model::RunId) -> Option<Box<dyn crate::FrameSink>> {
+    pub fn sink(&self, run: &socrates_model::RunId) -> Option<(Box<dyn crate::FrameSink>, crate::SharedMemory)> {
         let why = crate::StreamError::Shm {
             run: run.to_string(),
             what: "joining",

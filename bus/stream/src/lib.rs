@@ -24,7 +24,7 @@ mod error;
 pub use error::StreamError;
 
 mod sink;
-pub use sink::{Fanout, FrameSink, NoSink, Recorder};
+pub use sink::{Fanout, FrameSink, NoSink, Recorder, SharedMemory};
 
 mod order;
 pub use order::{Order, Seen, TickRange};

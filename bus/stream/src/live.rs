@@ -17,7 +17,7 @@ use crate::error::StreamError;
 use crate::mcap::Tape;
 use crate::part;
 use crate::shelf::{Ctl, Shelf};
-use crate::sink::FrameSink;
+use crate::sink::{FrameSink, SharedMemory};
 
 /// Ticks that go out together, where they come that fast.
 const TOGETHER: u64 = 10;
@@ -90,6 +90,13 @@ impl LiveSink {
         let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
         let publisher = Some(tokio::spawn(task.publish(asked, linger.clone())));
         Ok(Self { shelf, news, publisher })
+    }
+
+    /// Tells viewers that its ticks are in shared memory, too.
+    #[must_use]
+    pub fn sharing(self, place: SharedMemory) -> Self {
+        self.shelf.shares(place);
+        self
     }
 
     /// Waits until the run is on the bus to its end and the linger time is over; a run without an end ends here.
@@ -268,14 +275,14 @@ impl Publisher {
                 None => Ok(()),
             },
             Some("doors") => ask.reply(self.json(&self.shelf.doors())?).await,
-            Some("map") => {
-                let part = self.shelf.map(first_wanted(&ask)).unwrap_or_default();
-                ask.reply(part).await
-            }
-            Some("events") => {
-                let events = self.shelf.events(first_wanted(&ask));
-                ask.reply(self.json(&events)?).await
-            }
+            Some("map") => match first_wanted(&ask) {
+                Ok(first) => ask.reply(self.shelf.map(first).unwrap_or_default()).await,
+                Err(why) => ask.reply(self.json(&why)?).await,
+            },
+            Some("events") => match first_wanted(&ask) {
+                Ok(first) => ask.reply(self.json(&self.shelf.events(first))?).await,
+                Err(why) => ask.reply(self.json(&why)?).await,
+            },
             Some("ctl") => self.answer_ctl(ask).await,
             // Whatever else is under the run is not asked for.
             Some(_) | None => Ok(()),
@@ -301,9 +308,17 @@ impl Publisher {
     }
 }
 
-/// The number of the first thing that is asked for: 8 bytes, or nothing for the first of all.
-fn first_wanted(ask: &Ask) -> u64 {
-    ask.body().try_into().map_or(0, u64::from_le_bytes)
+/// The number of the first thing that is asked for: 8 bytes, or nothing for the first of all; else what is wrong, in JSON.
+fn first_wanted(ask: &Ask) -> Result<u64, serde_json::Value> {
+    if ask.body().is_empty() {
+        return Ok(0);
+    }
+    ask.body().try_into().map(u64::from_le_bytes).map_err(|_other| {
+        serde_json::json!({
+            "error": format!("the question on `{}` has {} bytes", ask.key(), ask.body().len()),
+            "hint": "the number of the first that is wanted as u64, little endian, in 8 bytes; none for the first of all",
+        })
+    })
 }
 
 /// What was told so far.

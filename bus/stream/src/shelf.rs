@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use serde::{Deserialize, Serialize};
 use socrates_model::live::{LiveDoor, LiveDoors, LiveEnd, LiveEvents, LiveMeta, LiveScene, VERSION};
@@ -12,6 +12,7 @@ use socrates_model::recording::{AGENT_STATE_BYTES, AgentInfo, AgentState, Event,
 
 use crate::mcap::Tape;
 use crate::part;
+use crate::sink::SharedMemory;
 
 /// Largest reply with events or agents, bytes.
 const PART_BYTES: usize = 48 * 1024;
@@ -71,6 +72,8 @@ pub(crate) struct Shelf {
     heard: AtomicBool,
     /// Cells of the map, as they are told.
     cells: Vec<u8>,
+    /// Where it is in shared memory.
+    shared: OnceLock<SharedMemory>,
 }
 
 #[derive(Default)]
@@ -84,8 +87,9 @@ struct Rows {
     first: u64,
     ticks: u64,
     events: Vec<Event>,
-    /// How often a door has opened or shut.
+    /// How often a door has opened or shut, and at which tick it did last.
     turns: u64,
+    turned: u64,
     ended: Option<LiveEnd>,
 }
 
@@ -104,6 +108,11 @@ impl Shelf {
 
     fn rows(&self) -> MutexGuard<'_, Rows> {
         self.rows.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Where it is in shared memory, too; said once.
+    pub(crate) fn shares(&self, place: SharedMemory) {
+        self.shared.get_or_init(|| place);
     }
 
     /// Whether anybody listens, as far as is known.
@@ -140,6 +149,7 @@ impl Shelf {
         {
             told.open = *open;
             rows.turns += 1;
+            rows.turned = event.time.tick();
         }
         rows.events.push(event.clone());
     }
@@ -167,6 +177,7 @@ impl Shelf {
             scene: rows.scene.clone(),
             ticks: rows.ticks,
             events: rows.events.len() as u64,
+            shared_memory: self.shared.get().and_then(SharedMemory::name),
             ended: rows.ended.clone(),
         };
         Some(meta)
@@ -187,7 +198,7 @@ impl Shelf {
     /// The doors as they stand now.
     pub(crate) fn doors(&self) -> LiveDoors {
         let rows = self.rows();
-        LiveDoors { tick: rows.ticks, doors: rows.doors.clone() }
+        LiveDoors { tick: rows.turned, doors: rows.doors.clone() }
     }
 
     /// The part of the map that begins with this cell; `None` where it has no such cell.
@@ -231,6 +242,10 @@ impl Shelf {
         let wanted = usize::try_from(to.saturating_add(1).saturating_sub(from)).unwrap_or(usize::MAX);
         let records = self.records(from, wanted.min(fit.max(1)), len)?;
         if fit > 0 {
+            // It is whole in its first part.
+            if part > 0 {
+                return None;
+            }
             let ticks = (records.len() / len) as u64;
             return Some((part::ticks(from, &records), ticks));
         }
@@ -315,5 +330,6 @@ mod tests {
         }
         assert_eq!(from, recording.ticks() as u64);
         assert!(shelf.message(from, u64::MAX, 0).is_none());
+        assert!(shelf.message(7, 7, 1).is_none(), "a tick of one part has no second");
     }
 }

@@ -18,7 +18,7 @@ use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingH
 use crate::corner::ShmConfig;
 use crate::error::StreamError;
 use crate::order::{Order, Seen, TickRange};
-use crate::sink::FrameSink;
+use crate::sink::{FrameSink, SharedMemory};
 
 /// Folder where shared memory segments live on this system.
 const SHM_FOLDER: &str = "/dev/shm";
@@ -143,11 +143,14 @@ impl ShmHost {
         Self { config, node: Arc::default() }
     }
 
-    /// A sink for the ticks of a run; none where shared memory cannot be had, which is logged.
+    /// A sink for the ticks of a run, and where it puts them; none where shared memory cannot be had, which is logged.
     #[must_use]
-    pub fn sink(&self, run: &RunId) -> Option<Box<dyn FrameSink>> {
+    pub fn sink(&self, run: &RunId) -> Option<(Box<dyn FrameSink>, SharedMemory)> {
         match ShmSink::open(run, self) {
-            Ok(sink) => Some(Box::new(sink)),
+            Ok(sink) => {
+                let place = sink.place.clone();
+                Some((Box::new(sink), place))
+            }
             Err(why) => {
                 tracing::warn!(%why, "no shared memory for this run");
                 None
@@ -222,6 +225,7 @@ impl Corner {
 pub struct ShmSink {
     corner: Corner,
     port: Option<Publisher<Ipc, [ShmState], ()>>,
+    place: SharedMemory,
 }
 
 impl ShmSink {
@@ -230,7 +234,7 @@ impl ShmSink {
     /// # Errors
     /// [`StreamError::Shm`]: the caller goes on without.
     pub fn open(run: &RunId, host: &ShmHost) -> Result<Self, StreamError> {
-        Ok(Self { corner: Corner::open(run, host)?, port: None })
+        Ok(Self { corner: Corner::open(run, host)?, port: None, place: SharedMemory::default() })
     }
 
     fn create(&self, agents: usize) -> Result<Publisher<Ipc, [ShmState], ()>, StreamError> {
@@ -273,7 +277,10 @@ impl ShmSink {
 impl FrameSink for ShmSink {
     fn announce(&mut self, header: &RecordingHeader) {
         match self.create(header.agents.len().max(1)) {
-            Ok(port) => self.port = Some(port),
+            Ok(port) => {
+                self.port = Some(port);
+                self.place.is_at(self.corner.name.as_str());
+            }
             Err(why) => tracing::warn!(%why, "no shared memory for this run"),
         }
     }
@@ -446,6 +453,20 @@ mod tests {
         assert_eq!(got.len() as u64 + lost, 180);
         assert_eq!(got.last(), Some(&199));
         assert!(lost > 0);
+    }
+
+    #[test]
+    fn a_second_run_of_the_same_name_says_that_it_has_no_shared_memory() {
+        let dir = tempfile::tempdir().unwrap();
+        let recording = csv::read_tracks("t,id,x,y\n0,human_1,0,0\n1,human_1,1,0\n").unwrap();
+        let run = RunId::new("twice").unwrap();
+        let (one, other) = (ShmHost::new(config(dir.path())), ShmHost::new(config(dir.path())));
+        let Some(mut first) = elsewhere(ShmSink::open(&run, &one).map_err(|why| why.to_string())) else { return };
+        first.announce(&recording.header);
+        assert_eq!(first.place.name().as_deref(), Some("socrates/twice"));
+        let mut second = ShmSink::open(&run, &other).unwrap();
+        second.announce(&recording.header);
+        assert_eq!(second.place.name(), None, "what a reader of it would find is the first");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Where the simulation puts its frames.
 
+use std::sync::{Arc, OnceLock};
+
 use socrates_model::live::LiveEnd;
 use socrates_model::recording::{AgentState, Event, Recording, RecordingHeader};
 
@@ -60,6 +62,24 @@ impl FrameSink for Fanout {
 
     fn end(&mut self, end: &LiveEnd) {
         self.0.iter_mut().for_each(|sink| sink.end(end));
+    }
+}
+
+/// The service of shared memory that has the ticks of a run, known from its announcement on.
+#[derive(Debug, Clone, Default)]
+pub struct SharedMemory(Arc<OnceLock<String>>);
+
+impl SharedMemory {
+    /// Its name; none where there is none, or not yet.
+    #[must_use]
+    pub fn name(&self) -> Option<String> {
+        self.0.get().cloned()
+    }
+
+    /// It is there under this name.
+    #[cfg_attr(not(feature = "shm"), allow(dead_code, reason = "without shared memory there is never one"))]
+    pub(crate) fn is_at(&self, name: &str) {
+        self.0.get_or_init(|| name.to_owned());
     }
 }
 

@@ -173,6 +173,39 @@ async fn a_late_joiner_of_a_finished_run_gets_header_gap_and_end() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn eyes_are_told_the_end_and_a_question_of_another_length_is_told_what_is_wrong() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
+        let run = RunId::new("r3b").unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, scene(), tape.clone(), &linger()).await.unwrap();
+        let mut eyes = bus.subscribe(&keys::live_latest(&run), 64, Overflow::DropOldest).await.unwrap();
+        let played = recording(1);
+        let sink = tokio::task::spawn_blocking(move || {
+            play(&mut sink, &tape, &played);
+            sink
+        });
+        let over = loop {
+            let message = eyes.next().await.unwrap().1;
+            if message.len() == 16 {
+                break message;
+            }
+        };
+        assert_eq!((&over[..4], &over[8..]), (&[2, 0, 3, 0][..], &101_u64.to_le_bytes()[..]));
+        for key in [keys::live_map(&run), keys::live_events(&run)] {
+            let told = bus.query(&key, vec![1, 2, 3], WATCHDOG).await.unwrap();
+            let told: serde_json::Value = serde_json::from_slice(&told).unwrap();
+            assert!(told["error"].as_str().unwrap().contains("3 bytes"), "{told}");
+            assert!(told["hint"].as_str().unwrap().contains("little endian"), "{told}");
+        }
+        let doors = bus.query(&keys::live_doors(&run), Vec::new(), WATCHDOG).await.unwrap();
+        assert!(serde_json::from_slice::<serde_json::Value>(&doors).unwrap()["tick"].as_u64().unwrap() < 101);
+        drop(sink.await.unwrap());
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn bytes_of_a_stranger_on_the_frame_key_harm_nobody() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());

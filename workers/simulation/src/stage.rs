@@ -11,7 +11,7 @@ use socrates_model::{
     Request, Role, RunId, Where, fault,
 };
 use socrates_stream::mcap::{Tape, Writer};
-use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, StreamError};
+use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, SharedMemory, ShmHost, StreamError};
 use tokio::runtime::Handle;
 
 use crate::driving::{Drive, Mode, OverBus};
@@ -169,14 +169,17 @@ async fn viewers(
         _ => (true, true),
     };
     let mut sinks = Fanout::new(Vec::new());
-    if shm && let Some(sink) = stage.shm.sink(run) {
+    let mut shared = SharedMemory::default();
+    // Announced before the bus, which then tells whether it is there.
+    if shm && let Some((sink, place)) = stage.shm.sink(run) {
         sinks.add(sink);
+        shared = place;
     }
     if bus {
         let has_robot = job.spec().run().is_none_or(|run| !run.planner.is_no_robot());
         let told = scene(setup, has_robot, job.spec(), pace);
         match LiveSink::open(Arc::clone(&job.live_bus()), run, told, tape.clone(), &stage.linger).await {
-            Ok(sink) => sinks.add(Box::new(sink)),
+            Ok(sink) => sinks.add(Box::new(sink.sharing(shared))),
             // Viewers never decide about a run.
             Err(why) => tracing::warn!(%run, %why, "nobody can watch this run over the bus"),
         }

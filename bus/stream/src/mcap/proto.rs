@@ -10,6 +10,7 @@ pub(super) struct Proto(Vec<u8>);
 
 const VARINT: u32 = 0;
 const FIXED_64: u32 = 1;
+const FIXED_32: u32 = 5;
 const COUNTED: u32 = 2;
 
 impl Proto {
@@ -50,6 +51,22 @@ impl Proto {
         }
     }
 
+    /// An integer of four bytes.
+    pub(super) fn fixed(&mut self, field: u32, value: u32) {
+        if value > 0 {
+            self.tag(field, FIXED_32);
+            self.0.extend_from_slice(&value.to_le_bytes());
+        }
+    }
+
+    pub(super) fn data(&mut self, field: u32, value: &[u8]) {
+        if !value.is_empty() {
+            self.tag(field, COUNTED);
+            self.varint(value.len() as u64);
+            self.0.extend_from_slice(value);
+        }
+    }
+
     pub(super) fn double(&mut self, field: u32, value: f64) {
         if value.to_bits() != 0 {
             self.tag(field, FIXED_64);
@@ -58,11 +75,7 @@ impl Proto {
     }
 
     pub(super) fn text(&mut self, field: u32, value: &str) {
-        if !value.is_empty() {
-            self.tag(field, COUNTED);
-            self.varint(value.len() as u64);
-            self.0.extend_from_slice(value.as_bytes());
-        }
+        self.data(field, value.as_bytes());
     }
 
     /// A message within; it is there even where nothing is written into it.
@@ -94,14 +107,14 @@ enum Kind {
     Text,
     Bytes,
     Message(&'static str),
-    /// Enumeration `Type` of the same message.
-    Choice,
+    /// Enumeration of this name in the same message.
+    Choice(&'static str),
 }
 
 /// One field: name, number, type, whether there may be several.
 type Field = (&'static str, u32, Kind, bool);
 
-/// One message: its name, the names of its enumeration `Type`, its fields.
+/// One message: its name, the names of its enumeration, its fields.
 struct Message(&'static str, &'static [&'static str], &'static [Field]);
 
 const ONE: bool = false;
@@ -191,7 +204,7 @@ const FOXGLOVE: &[Message] = &[
         "LinePrimitive",
         &["LINE_STRIP", "LINE_LOOP", "LINE_LIST"],
         &[
-            ("type", 1, Kind::Choice, ONE),
+            ("type", 1, Kind::Choice("Type"), ONE),
             ("pose", 2, POSE, ONE),
             ("thickness", 3, Kind::Double, ONE),
             ("scale_invariant", 4, Kind::Bool, ONE),
@@ -240,7 +253,7 @@ const FOXGLOVE: &[Message] = &[
     Message(
         "SceneEntityDeletion",
         &["MATCHING_ID", "ALL"],
-        &[("timestamp", 1, STAMP, ONE), ("type", 2, Kind::Choice, ONE), ("id", 3, Kind::Text, ONE)],
+        &[("timestamp", 1, STAMP, ONE), ("type", 2, Kind::Choice("Type"), ONE), ("id", 3, Kind::Text, ONE)],
     ),
     Message(
         "SceneEntity",
@@ -260,6 +273,31 @@ const FOXGLOVE: &[Message] = &[
             ("triangles", 12, Kind::Message(".foxglove.TriangleListPrimitive"), MANY),
             ("texts", 13, Kind::Message(".foxglove.TextPrimitive"), MANY),
             ("models", 14, Kind::Message(".foxglove.ModelPrimitive"), MANY),
+        ],
+    ),
+    Message("Vector2", &[], &[("x", 1, Kind::Double, ONE), ("y", 2, Kind::Double, ONE)]),
+    Message(
+        "PackedElementField",
+        &["UNKNOWN", "UINT8", "INT8", "UINT16", "INT16", "UINT32", "INT32", "FLOAT32", "FLOAT64"],
+        &[
+            ("name", 1, Kind::Text, ONE),
+            ("offset", 2, Kind::Fixed32, ONE),
+            ("type", 3, Kind::Choice("NumericType"), ONE),
+        ],
+    ),
+    Message(
+        "Grid",
+        &[],
+        &[
+            ("timestamp", 1, STAMP, ONE),
+            ("frame_id", 2, Kind::Text, ONE),
+            ("pose", 3, POSE, ONE),
+            ("column_count", 4, Kind::Fixed32, ONE),
+            ("cell_size", 5, Kind::Message(".foxglove.Vector2"), ONE),
+            ("row_stride", 6, Kind::Fixed32, ONE),
+            ("cell_stride", 7, Kind::Fixed32, ONE),
+            ("fields", 8, Kind::Message(".foxglove.PackedElementField"), MANY),
+            ("data", 9, Kind::Bytes, ONE),
         ],
     ),
     Message(
@@ -340,7 +378,7 @@ fn message(out: &mut Proto, Message(name, choices, fields): &Message) {
                 Kind::Text => (9, None),
                 Kind::Message(full) => (11, Some((*full).to_owned())),
                 Kind::Bytes => (12, None),
-                Kind::Choice => (14, Some(format!(".foxglove.{name}.Type"))),
+                Kind::Choice(choice) => (14, Some(format!(".foxglove.{name}.{choice}"))),
             };
             out.message(2, |out| {
                 out.text(1, field);
@@ -350,12 +388,14 @@ fn message(out: &mut Proto, Message(name, choices, fields): &Message) {
                 out.text(6, refers.as_deref().unwrap_or(""));
             });
         }
-        if !choices.is_empty() {
+        let chosen =
+            fields.iter().find_map(|(_, _, kind, _)| if let Kind::Choice(choice) = kind { Some(choice) } else { None });
+        if let Some(choice) = chosen {
             out.message(4, |out| {
-                out.text(1, "Type");
-                for (number, choice) in (0_u64..).zip(*choices) {
+                out.text(1, choice);
+                for (number, value) in (0_u64..).zip(*choices) {
                     out.message(2, |out| {
-                        out.text(1, choice);
+                        out.text(1, value);
                         out.number(2, number);
                     });
                 }
@@ -413,7 +453,7 @@ mod tests {
                             || GOOGLE.iter().any(|(_, other)| *full == format!(".google.protobuf.{}", other.0));
                         assert!(known, "{name}.{field}: {full}");
                     }
-                    Kind::Choice => assert!(!choices.is_empty(), "{name}.{field}"),
+                    Kind::Choice(_) => assert!(!choices.is_empty(), "{name}.{field}"),
                     Kind::Double
                     | Kind::Int64
                     | Kind::Int32

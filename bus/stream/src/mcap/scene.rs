@@ -4,6 +4,7 @@ use socrates_model::grid::{Cell, Grid};
 use socrates_model::recording::{AgentState, RecordingHeader};
 use socrates_model::{AgentId, Gesture, Location, SimTime};
 
+use super::floor;
 use super::proto::Proto;
 
 /// Height at which people are drawn, m.
@@ -260,6 +261,32 @@ pub(super) fn walls(location: &Location) -> Proto {
         });
     }
     out
+}
+
+/// `foxglove.Grid`: the map, its first row at the bottom; none where it has no cells.
+pub(super) fn grid(location: &Location) -> Option<Proto> {
+    /// Number of `UINT8` among the types of a field.
+    const UINT8: u64 = 1;
+    let floor = floor::floor(&location.grid)?;
+    let columns = u32::try_from(floor.columns).ok()?;
+    let origin = &location.grid.origin;
+    let mut out = Proto::default();
+    stamp(&mut out, 1, SimTime::ZERO);
+    out.text(2, MAP);
+    pose(&mut out, 3, [origin.x, origin.y, 0.0], origin.yaw);
+    out.fixed(4, columns);
+    out.message(5, |out| {
+        out.double(1, floor.side_m);
+        out.double(2, floor.side_m);
+    });
+    out.fixed(6, columns);
+    out.fixed(7, 1);
+    out.message(8, |out| {
+        out.text(1, "occupancy");
+        out.number(3, UINT8);
+    });
+    out.data(9, &floor.cells);
+    Some(out)
 }
 
 /// Pairs of points: every straight stretch between free floor and an occupied cell.

@@ -175,8 +175,12 @@ impl<W: Write> Writer<W> {
             people: pen.picture_channel("/crowd", "PosesInFrame")?,
             robot: pen.picture_channel("/robot", "PoseInFrame")?,
         };
+        let map = pen.picture_channel("/map", "Grid")?;
         pen.json(first, SimTime::ZERO, header)?;
         if let Some(location) = location {
+            if let Some(grid) = scene::grid(location) {
+                pen.picture(map, SimTime::ZERO, &grid)?;
+            }
             pen.picture(channels.scene, SimTime::ZERO, &scene::walls(location))?;
         }
         Ok(Self {

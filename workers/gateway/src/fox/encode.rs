@@ -8,17 +8,15 @@ use foxglove::messages::{
     FrameTransform, FrameTransforms, Grid as GridMessage, LaserScan, Log, Odometry, PackedElementField, PointCloud,
     Pose, PosesInFrame, Quaternion, Timestamp, Vector2, Vector3,
 };
-use socrates_model::grid::{Cell, Grid};
+use socrates_model::grid::Grid;
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, EventKind};
 use socrates_model::{AgentId, SimTime};
+use socrates_stream::mcap::{Floor, floor};
 
 /// Frame of the map.
 pub(crate) const MAP: &str = "map";
 /// Frame of the robot.
 pub(crate) const ROBOT: &str = "robot";
-/// Most cells of `/map`: a larger map is made coarser by a whole number. Four million are 2 000 × 2 000; a browser draws them as
-/// one texture.
-pub const MAP_CELLS: usize = 4_000_000;
 /// Height at which the beams of the lidar are drawn, m.
 const SCAN_Z_M: f64 = 0.2;
 /// Height at which the intended way is drawn, m: above the map, below everybody.
@@ -32,13 +30,6 @@ const COVARIANCE: usize = 36;
 /// Longest text of an event, characters.
 const EVENT_CHARS: usize = 2_000;
 const NANOS: u64 = 1_000_000_000;
-
-/// Occupancy of a free cell, percent.
-const FREE: u8 = 0;
-/// Occupancy of a cell that was never seen, percent: between the two, so that a ramp of gray shows all three.
-const UNKNOWN: u8 = 50;
-/// Occupancy of an occupied cell, percent.
-const OCCUPIED: u8 = 100;
 
 /// A message as bytes.
 pub(crate) fn bytes(message: &impl Encode) -> Bytes {
@@ -71,24 +62,8 @@ fn field(name: &str, offset: u32, kind: NumericType) -> PackedElementField {
 /// `/map`: the grid, its first row at the bottom; nothing where cells are missing or the map is empty.
 #[must_use]
 pub fn map(grid: &Grid) -> Option<Bytes> {
-    if grid.width == 0 || grid.height == 0 || grid.width.checked_mul(grid.height) != Some(grid.cells.len()) {
-        return None;
-    }
-    let coarse = coarseness(grid.width, grid.height);
-    let columns = grid.width.div_ceil(coarse);
-    let mut data = Vec::with_capacity(columns * grid.height.div_ceil(coarse));
-    let rows: Vec<&[Cell]> = grid.cells.chunks_exact(grid.width).rev().collect();
-    for block in rows.chunks(coarse) {
-        let begin = data.len();
-        data.resize(begin + columns, UNKNOWN);
-        for row in block {
-            let line = data.iter_mut().skip(begin);
-            line.zip(row.chunks(coarse)).for_each(|(slot, cells)| *slot = cells.iter().fold(*slot, joined));
-        }
-    }
+    let Floor { columns, side_m: side, cells } = floor(grid)?;
     let stride = u32::try_from(columns).ok()?;
-    #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
-    let side = grid.resolution_m * coarse as f64;
     let origin = &grid.origin;
     Some(bytes(&GridMessage {
         timestamp: stamp(SimTime::ZERO),
@@ -99,22 +74,8 @@ pub fn map(grid: &Grid) -> Option<Bytes> {
         row_stride: stride,
         cell_stride: 1,
         fields: vec![field("occupancy", 0, NumericType::Uint8)],
-        data: data.into(),
+        data: cells.into(),
     }))
-}
-
-/// By which whole number a map is made coarser.
-fn coarseness(width: usize, height: usize) -> usize {
-    (1..).find(|by| width.div_ceil(*by).saturating_mul(height.div_ceil(*by)) <= MAP_CELLS).unwrap_or(1)
-}
-
-/// Occupancy of a place with one more cell: a wall stays a wall, and free floor is told from what was never seen.
-const fn joined(so_far: u8, cell: &Cell) -> u8 {
-    match (so_far, cell) {
-        (OCCUPIED, _) | (_, Cell::Occupied) => OCCUPIED,
-        (FREE, _) | (_, Cell::Free) => FREE,
-        (_, Cell::Unknown) => UNKNOWN,
-    }
 }
 
 /// `/robot/plan`: the points of the way, each facing the next; nothing for a way without points.
@@ -254,6 +215,8 @@ fn told_by(kind: &EventKind) -> (Level, String) {
 
 #[cfg(test)]
 mod tests {
+    use socrates_model::grid::Cell;
+
     use super::*;
     use foxglove::Decode as _;
     use socrates_model::Pose as MapPose;
@@ -317,7 +280,7 @@ mod tests {
         let grid = Grid { width, height, resolution_m: 0.05, origin: MapPose::new(0.0, 0.0, 0.0), cells };
         let read = GridMessage::decode(map(&grid).unwrap()).unwrap();
         assert_eq!((read.column_count, read.data.len()), (2_001, 2_001 * 1_001));
-        assert!(read.data.len() <= MAP_CELLS && close(read.cell_size.unwrap().y, 0.1));
+        assert!(read.data.len() <= socrates_stream::mcap::FLOOR_CELLS && close(read.cell_size.unwrap().y, 0.1));
         let walls: Vec<usize> = (0..read.data.len()).filter(|at| read.data[*at] == 100).collect();
         assert_eq!(walls, [0, 2_001 * 1_000 + 1_000]);
     }
