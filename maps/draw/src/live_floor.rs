@@ -13,8 +13,10 @@ pub struct LiveFloor {
     pub area: [f64; 4],
     /// Drawing units of a meter.
     pub px_per_m: f64,
-    /// World point of the upper left corner, m.
+    /// Upper left corner along the axes of the map, which are turned by `yaw` against those of the world, m.
     pub origin: [f64; 2],
+    /// Direction of the map's first axis in the world, rad.
+    pub yaw: f64,
     /// The drawing, without what nobody has asked for.
     svg: String,
 }
@@ -34,6 +36,7 @@ impl LiveFloor {
             area: [0.0, 0.0, width.round(), height.round()],
             px_per_m,
             origin: [-left / px_per_m, top / px_per_m],
+            yaw: location.grid.origin.yaw,
             svg: svg.finish(),
         }
     }
@@ -52,14 +55,20 @@ mod tests {
 
     #[test]
     fn world_points_are_where_the_drawing_has_them() {
-        let location = hall("hall");
-        let floor = LiveFloor::of(&location);
-        let frame = play::frame(&location);
-        for point in [Point::new(0.0, 0.0), Point::new(3.5, 1.25)] {
-            let (x, y) = frame.px(&location, &point);
-            assert!(((point.x - floor.origin[0]) * floor.px_per_m - x).abs() < 1e-6);
-            assert!(((floor.origin[1] - point.y) * floor.px_per_m - y).abs() < 1e-6);
+        for yaw in [0.0, 0.5, -2.1] {
+            let mut location = hall("hall");
+            location.grid.origin.yaw = yaw;
+            let floor = LiveFloor::of(&location);
+            let frame = play::frame(&location);
+            let (sin, cos) = floor.yaw.sin_cos();
+            for point in [Point::new(0.0, 0.0), Point::new(3.5, 1.25)] {
+                let (x, y) = frame.px(&location, &point);
+                let (along, across) = (cos * point.x + sin * point.y, cos * point.y - sin * point.x);
+                assert!(((along - floor.origin[0]) * floor.px_per_m - x).abs() < 1e-6, "yaw {yaw}: {x}");
+                assert!(((floor.origin[1] - across) * floor.px_per_m - y).abs() < 1e-6, "yaw {yaw}: {y}");
+            }
         }
+        let floor = LiveFloor::of(&hall("hall"));
         assert!(floor.svg().starts_with("<svg") && floor.svg().contains("</svg>"));
     }
 }

@@ -75,7 +75,7 @@ impl Scene {
         json!({
             "version": 1, "run": header.run, "planner": header.planner, "seed": header.seed, "step_s": header.step_s,
             "pace": self.pace, "title": self.title, "location": self.location.name,
-            "place": { "box": floor.area, "px_per_m": floor.px_per_m, "origin": floor.origin },
+            "place": { "box": floor.area, "px_per_m": floor.px_per_m, "origin": floor.origin, "yaw": floor.yaw },
             "robot": robot, "goal": self.goal.as_ref().map(at), "way": self.way.iter().map(at).collect::<Vec<_>>(),
             "agents": agents, "leaves": header.leaves, "absent_leaf": header.absent(), "doors": doors,
             "first_tick": 0,

@@ -1,4 +1,5 @@
 // What part of a place a map shows, and how hands move it: wheel, drag, pinch, click. Units are those of the floor's drawing.
+// This is the only file that knows how world, drawing and map belong together; every layer asks it.
 
 // Nobody wants to see less than this share of the place's size, or more pixels per meter than this.
 const LEAST_SHARE = 0.5, MOST_PX_PER_M = 400;
@@ -6,6 +7,24 @@ const WHEEL = 0.0015;
 // A press that moves less than this is a click, px.
 const STILL_PX = 6;
 const MARGIN_M = 2, LEAST_M = 8;
+
+/**
+ * Where a place lies in its drawing. The axes of the world may be turned against those of the drawing by `yaw`, rad, counter-clockwise: a map
+ * whose origin is turned is drawn along its own rows. `origin` is the upper left corner of the drawing, m along the axes of the drawing.
+ */
+class Ground {
+  constructor({ px_per_m, origin, yaw }) {
+    this.px_per_m = px_per_m; this.yaw = Number.isFinite(yaw) ? yaw : 0;
+    this.left = origin[0] * px_per_m; this.top = origin[1] * px_per_m;
+    // Drawing units of a meter along each axis of the world.
+    this.c = Math.cos(this.yaw) * px_per_m; this.s = Math.sin(this.yaw) * px_per_m;
+  }
+  ux(x, y) { return this.c * x + this.s * y - this.left; }
+  uy(x, y) { return this.top + this.s * x - this.c * y; }
+}
+
+/** Whether two places are drawn alike, so that the same part of both can be shown. */
+export const drawnAlike = (a, b) => a.px_per_m === b.px_per_m && a.box.join() === b.box.join() && a.origin.join() === b.origin.join() && (a.yaw || 0) === (b.yaw || 0);
 
 export class Camera {
   /** `changed` after each move; `picked(x, y)` with a click in px of the map. Hands that move it also call `moved`, and dragging `dragged`. */
@@ -24,13 +43,27 @@ export class Camera {
     for (const end of ["pointerup", "pointercancel"]) node.addEventListener(end, (e) => this.up(e));
   }
 
-  load(place) { this.place = place; this.mode = "whole"; this.resize(); }
-  /** World to drawing units. */
-  ux(x) { return (x - this.place.origin[0]) * this.place.px_per_m; }
-  uy(y) { return (this.place.origin[1] - y) * this.place.px_per_m; }
+  load(place) {
+    this.place = place; this.ground = new Ground(place); this.area = null; this.mode = "whole";
+    this.resize();
+  }
   /** World to px of the map. */
-  sx(x) { return (this.ux(x) - this.x) * this.k; }
-  sy(y) { return (this.uy(y) - this.y) * this.k; }
+  sx(x, y) { return (this.ground.ux(x, y) - this.x) * this.k; }
+  sy(x, y) { return (this.ground.uy(x, y) - this.y) * this.k; }
+  /** Angle in the world to an angle on the map, counter-clockwise from the right. */
+  turn(yaw) { return yaw - this.ground.yaw; }
+  /** World to px of the map as six numbers a to f, as of CSS: x' = a x + c y + e, y' = b x + d y + f. */
+  matrix() {
+    const { c, s } = this.ground, k = this.k;
+    return [c * k, s * k, s * k, -c * k, this.sx(0, 0), this.sy(0, 0)];
+  }
+  /** Px of the map to drawing units. */
+  drawn(x, y) { return [this.x + x / this.k, this.y + y / this.k]; }
+  /** Where the drawing itself lies on the map, as a transform of CSS. */
+  floor() {
+    const [bx, by] = this.place.box;
+    return `translate(${(bx - this.x) * this.k}px, ${(by - this.y) * this.k}px) scale(${this.k})`;
+  }
   /** Px on the map of a length in m. */
   px(m) { return m * this.place.px_per_m * this.k; }
 
@@ -61,7 +94,7 @@ export class Camera {
   around(points) {
     if (!this.place || points.length === 0) return false;
     const p = this.place.px_per_m, [bx, by, bw, bh] = this.place.box;
-    const xs = points.map(([x]) => this.ux(x)), ys = points.map(([, y]) => this.uy(y));
+    const xs = points.map(([x, y]) => this.ground.ux(x, y)), ys = points.map(([x, y]) => this.ground.uy(x, y));
     const mx = (Math.min(...xs) + Math.max(...xs)) / 2, my = (Math.min(...ys) + Math.max(...ys)) / 2;
     const w = Math.max(Math.max(...xs) - Math.min(...xs) + 2 * MARGIN_M * p, LEAST_M * p), h = Math.max(Math.max(...ys) - Math.min(...ys) + 2 * MARGIN_M * p, LEAST_M * p);
     const x0 = Math.max(bx, mx - w / 2), y0 = Math.max(by, my - h / 2), x1 = Math.min(bx + bw, mx + w / 2), y1 = Math.min(by + bh, my + h / 2);
@@ -89,6 +122,15 @@ export class Camera {
     this.moved?.();
   }
 
+  /** Moves what is seen by these shares of the map's width and height. */
+  pan(across, down) {
+    if (!this.place) return;
+    this.x += across * this.w / this.k; this.y += down * this.h / this.k;
+    this.mode = "free";
+    this.changed();
+    this.moved?.();
+  }
+
   /** Puts a point of the world into the middle. */
   center(x, y) {
     if (this.mode !== "free") {
@@ -96,8 +138,8 @@ export class Camera {
       if (this.mode === "whole") this.k = Math.max(this.k, Math.min(this.most(), Math.min(this.w, this.h) / (14 * this.place.px_per_m)));
       this.mode = "free";
     }
-    this.x = this.ux(x) - this.w / 2 / this.k;
-    this.y = this.uy(y) - this.h / 2 / this.k;
+    this.x = this.ground.ux(x, y) - this.w / 2 / this.k;
+    this.y = this.ground.uy(x, y) - this.h / 2 / this.k;
   }
 
   down(e) {

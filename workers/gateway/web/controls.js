@@ -10,19 +10,41 @@ const NEWS_SECS = 2.5;
 const QUIET_MS = 4000;
 const MOST_FOLLOWED = 60;
 
+const MOVES = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", "PageUp", "PageDown"];
+// Keys that do the same again while they are held.
+const HELD = [...MOVES, ",", ".", "[", "]", "+", "=", "-"];
+
+// Whether the part of the page that has the focus does something itself with a key.
+function wanted(node, key) {
+  if (node.isContentEditable || /^(TEXTAREA|SELECT)$/.test(node.tagName)) return true;
+  if (node.tagName === "INPUT") return node.type !== "range" || MOVES.includes(key);
+  if (/^(BUTTON|SUMMARY|A)$/.test(node.tagName) && key === " ") return true;
+  if (!MOVES.includes(key)) return false;
+  const list = node.closest?.(".clauses, #events, .rows");
+  if (list && list.scrollHeight > list.clientHeight + 1) return true;
+  // On a page that is scrolled down to its panel the arrows scroll on: there is no map to be moved.
+  return key.startsWith("Arrow") && at("maps").getBoundingClientRect().bottom < 40;
+}
+
 /** Keys that no field wants: `act` gives what each one does, by name. */
 export function keys(act) {
+  let pressed = false;
   addEventListener("keydown", (e) => {
-    if (e.ctrlKey || e.metaKey || e.altKey || e.key === "Enter") return;
-    const tag = e.target.tagName, typing = tag === "TEXTAREA" || tag === "SELECT" || (tag === "INPUT" && e.target.type !== "range");
-    if (typing || (e.key === " " && /^(BUTTON|SUMMARY|A)$/.test(tag))) return;
+    pressed = false;
+    if (e.ctrlKey || e.metaKey || e.altKey || e.isComposing || e.key === "Enter") return;
+    const help = document.querySelector("dialog[open]");
+    if (help) { if (e.key === "?") { help.close(); e.preventDefault(); } return; }
     const does = act[(e.shiftKey && e.key.startsWith("Arrow") ? "Shift" : "") + e.key];
-    if (does) { does(); e.preventDefault(); }
+    if (!does || wanted(e.target, e.key)) return;
+    e.preventDefault();
+    if (!e.repeat || HELD.includes(e.key)) does();
   });
-  // After a click the keys belong to the player again.
+  // After a press of the mouse or a finger the keys belong to the player again; from the keyboard the focus stays.
+  addEventListener("pointerdown", () => { pressed = true; }, true);
   addEventListener("click", (e) => {
-    if (e.detail > 0 && e.target.closest?.("button") && document.activeElement && document.activeElement.getAttribute("role") !== "tab") document.activeElement.blur();
+    if (e.detail > 0 && e.target.closest?.("button") && !document.querySelector("dialog[open]") && document.activeElement && document.activeElement.getAttribute("role") !== "tab") document.activeElement.blur();
   });
+  addEventListener("change", (e) => { if (pressed && e.target.matches?.("select, input[type=range]")) e.target.blur(); });
 }
 
 export class Controls {

@@ -8,12 +8,12 @@ const BUFFERS = 4;
 const VERTEX = `#version 300 es
 layout(location=0) in vec2 at0; layout(location=1) in float turn0; layout(location=2) in uvec2 who0;
 layout(location=3) in vec2 at1; layout(location=4) in float turn1; layout(location=5) in uvec2 who1;
-uniform vec4 view; uniform vec2 size; uniform float mixed, body, zoom; uniform vec3 colors[8];
+uniform mat3x2 place; uniform float turned; uniform vec2 size; uniform float mixed, body, zoom; uniform vec3 colors[8];
 out vec3 tint; out vec2 heading; out float rim; flat out uint flags;
 void main() {
   flags = who0.y;
   float u = (who1.y & ${THERE}u) != 0u ? mixed : 0.0;
-  vec2 p = (mix(at0, at1, u) * vec2(1.0, -1.0) - view.xy) * view.zw;
+  vec2 p = place * vec3(mix(at0, at1, u), 1.0);
   bool there = (flags & ${THERE}u) != 0u && who0.x != 0u;
   gl_Position = there ? vec4(p / size * 2.0 - 1.0, 0.0, 1.0) * vec4(1.0, -1.0, 1.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
   bool marked = (flags & ${GESTURE}u) != 0u;
@@ -21,7 +21,7 @@ void main() {
   gl_PointSize = max(2.0, body * rim * zoom);
   tint = colors[(who0.x + 7u) % 8u];
   float d = turn1 - turn0;
-  float a = (turn0 + (d - 2.0 * floor(d / 2.0 + 0.5)) * u) * 3.14159265;
+  float a = (turn0 + (d - 2.0 * floor(d / 2.0 + 0.5)) * u) * 3.14159265 - turned;
   heading = vec2(cos(a), -sin(a));
 }`;
 
@@ -75,7 +75,7 @@ export class Points {
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error("the graphics card refuses a program: " + gl.getProgramInfoLog(program));
     gl.useProgram(program);
-    this.at = Object.fromEntries(["view", "size", "mixed", "body", "zoom", "colors"].map((name) => [name, gl.getUniformLocation(program, name)]));
+    this.at = Object.fromEntries(["place", "turned", "size", "mixed", "body", "zoom", "colors"].map((name) => [name, gl.getUniformLocation(program, name)]));
     gl.uniform3fv(this.at.colors, humans());
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -130,8 +130,8 @@ export class Points {
     const first = this.buffer(a), second = mixed ? this.buffer(b) : first;
     this.point(0, first);
     this.point(3, second);
-    const p = camera.place.px_per_m, [ox, oy] = camera.place.origin;
-    gl.uniform4f(this.at.view, ox + camera.x / p, camera.y / p - oy, p * camera.k, p * camera.k);
+    gl.uniformMatrix3x2fv(this.at.place, false, camera.matrix());
+    gl.uniform1f(this.at.turned, -camera.turn(0));
     gl.uniform2f(this.at.size, camera.w, camera.h);
     gl.uniform1f(this.at.mixed, mixed ? moment.u : 0);
     gl.uniform1f(this.at.body, body_px * ratio);

@@ -1,4 +1,5 @@
 // The page of the gateway: the list of runs, or a run with its maps, controls and panel, perhaps with a second run beside it.
+import { drawnAlike } from "./camera.js";
 import { Clock } from "./clock.js";
 import { Controls, keys } from "./controls.js";
 import { showList } from "./list.js";
@@ -13,6 +14,8 @@ const AMBER_MS = 250;
 const MOST_ERRORS = 50;
 // Live frames may be this many times farther apart than smooth ones before the picture stops to mix them: the next one is on its way.
 const PATIENCE = 4;
+// A press of an arrow moves the map by this share of itself, or with shift the time by so much, s.
+const PAN_SHARE = 0.12, HOP_SECS = 0.5;
 
 /** What tests read: counts since the page was loaded. */
 const seen = window.socrates = { frames: 0, acked: 0, drawn: 0, behind_ms: null, time_s: 0, live: false, agents: 0, renderer: "canvas", errors: [] };
@@ -68,7 +71,7 @@ class App {
   // Maps of one place show the same part of it: that is what makes two runs comparable.
   alike(stage) {
     const [a, b] = [stage.reel.scene, this.stages[0].reel.scene];
-    return Boolean(a && b) && a.place.px_per_m === b.place.px_per_m && a.place.box.join() === b.place.box.join();
+    return Boolean(a && b) && drawnAlike(a.place, b.place);
   }
   moved(stage) {
     for (const other of this.stages) if (other !== stage && this.alike(other) && this.alike(stage)) other.view.lookAs(stage.view);
@@ -100,7 +103,11 @@ class App {
     const whose = at("whose");
     whose.hidden = this.stages.length < 2;
     whose.textContent = "";
-    if (this.stages.length > 1) this.stages.forEach((stage, i) => press(stage.run, whose, () => this.read(i)).setAttribute("aria-pressed", String(i === this.about)));
+    if (this.stages.length > 1) this.stages.forEach((stage, i) => {
+      const button = press(stage.run, whose, () => this.read(i));
+      button.title = stage.run;
+      button.setAttribute("aria-pressed", String(i === this.about));
+    });
     this.paneled = 0;
     this.changed();
   }
@@ -136,18 +143,27 @@ class App {
   }
 
   listen() {
-    const { clock } = this, robot = () => this.follow(this.followed === 0 ? null : 0);
+    const { clock } = this;
     const each = (does) => { for (const stage of this.stages) if (stage === this.stages[0] || !this.alike(stage)) does(stage); };
     const zoom = (by) => each((stage) => stage.view.camera.zoom(by));
+    const pan = (across, down) => { this.follow(null); each((stage) => stage.view.camera.pan(across * PAN_SHARE, down * PAN_SHARE)); };
     keys({
-      " ": () => this.toggle(), ArrowRight: () => this.go(clock.now + 0.5), ArrowLeft: () => this.go(clock.now - 0.5),
-      ShiftArrowRight: () => this.go(clock.now + 0.1), ShiftArrowLeft: () => this.go(clock.now - 0.1), ",": () => this.step(-1), ".": () => this.step(1),
+      " ": () => this.toggle(), ArrowLeft: () => pan(-1, 0), ArrowRight: () => pan(1, 0), ArrowUp: () => pan(0, -1), ArrowDown: () => pan(0, 1),
+      ShiftArrowLeft: () => this.go(clock.now - HOP_SECS), ShiftArrowRight: () => this.go(clock.now + HOP_SECS), ",": () => this.step(-1), ".": () => this.step(1),
       "[": () => this.event(-1), "]": () => this.event(1), Home: () => this.go(clock.first), End: () => (this.alive() ? this.live() : this.go(clock.last)),
-      l: () => this.live(), f: robot, "+": () => zoom(1.4), "=": () => zoom(1.4), "-": () => zoom(1 / 1.4), 0: () => each((stage) => stage.toggleMap()),
+      l: () => this.live(), f: () => this.robot(), "+": () => zoom(1.4), "=": () => zoom(1.4), "-": () => zoom(1 / 1.4),
+      0: () => { this.follow(null); each((stage) => stage.view.camera.show("whole")); }, "?": () => at("help").showModal(),
     });
+    at("help-open").addEventListener("click", () => at("help").showModal());
+    // A press beside the help closes it, as Escape does.
+    at("help").addEventListener("click", (e) => { if (e.target === at("help")) at("help").close(); });
     addEventListener("resize", () => this.changed());
   }
 
+  robot() {
+    if (this.followed === 0) this.follow(null);
+    else if (this.stages.some((s) => s.reel.scene && s.reel.scene.agents.some((a) => a.number === 0))) this.follow(0);
+  }
   alive() { return this.stages.some((s) => s.reel.scene && s.reel.live()); }
   linked() { return this.stages.some((s) => s.reel.scene && s.reel.live() && s.link === "open"); }
   toggle() { this.clock.toggle(this.alive()); }

@@ -23,6 +23,8 @@ const AGAIN_MS = 1500;
 // Frames larger than this are those of a crowd.
 const CROWD_BYTES = 65536;
 const MOST_EVENTS = 20000;
+// Standings that differ from the one before: a checklist changes some dozen times.
+const MOST_STANDINGS = 2000;
 
 export class Reel {
   /** `told` is called with a fault of the stored bytes; `changed` whenever frames came. */
@@ -33,7 +35,7 @@ export class Reel {
   }
 
   clear() {
-    this.frames = []; this.bytes = 0; this.events = []; this.doors = new Map(); this.standing = null; this.ended = null; this.lost = 0;
+    this.frames = []; this.bytes = 0; this.events = []; this.doors = new Map(); this.standing = null; this.standings = []; this.ended = null; this.lost = 0;
     this.chunks = new Map(); this.flying = 0; this.age = (this.age || 0) + 1;
   }
 
@@ -219,6 +221,22 @@ export class Reel {
     let open = !times[0][1];
     for (const [from, is] of times) { if (from > t + 1e-6) break; open = is; }
     return open;
+  }
+
+  /** Takes how the run stands now, and keeps how it stood before. */
+  stand(standing) {
+    this.standing = standing;
+    const clauses = standing.clauses || [], key = JSON.stringify(clauses.map((c) => [c.id, c.standing, c.at_s])), last = this.standings[this.standings.length - 1];
+    if (standing.final || (last && (last.key === key || standing.time_s <= last.t)) || this.standings.length >= MOST_STANDINGS) return;
+    this.standings.push({ t: standing.time_s, key, clauses: new Map(clauses.map((c) => [c.id, c])) });
+  }
+
+  /** What had been seen of a clause by a time: `[standing, at_s]`. A clause that nobody had judged yet is `open`. */
+  stood(clause, t) {
+    const seen = (c) => c.standing !== "open" && c.at_s !== null && c.at_s !== undefined && c.at_s <= t + 0.005;
+    if (seen(clause)) return [clause.standing, clause.at_s];
+    const then = this.standings.findLast((s) => s.t <= t + 0.005)?.clauses.get(clause.id);
+    return then && then.standing !== "open" ? [then.standing, then.at_s] : ["open", null];
   }
 
   /** Number of events up to a time. */

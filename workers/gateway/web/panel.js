@@ -11,6 +11,8 @@ const VERDICTS = { realised: ["✔", "good"], not_realised: ["✘", "bad"] };
 // Rows that a list shows at once: more of them slow the page down and nobody reads them.
 const MOST_ROWS = 200;
 const MOST_PEOPLE = 60;
+// A live picture is this far behind its judgment and still the newest, s of the run.
+const BEHIND_SECS = 0.3;
 
 export class Panel {
   /** `go(t)` shows a time, `follow(number)` follows somebody or, with null, nobody. */
@@ -30,7 +32,7 @@ export class Panel {
     at("find").addEventListener("input", () => { this.people = null; });
   }
 
-  forget() { this.standing = null; this.clauses = ""; this.metrics = null; this.events = -1; this.people = null; this.from = -1; this.marks = []; }
+  forget() { this.standing = null; this.clauses = ""; this.metrics = null; this.events = -1; this.people = null; this.from = -1; this.items = []; }
 
   choose(tab) {
     for (const other of document.querySelectorAll("#tabs button")) {
@@ -70,37 +72,57 @@ export class Panel {
       this.standing = standing;
       // The list is built anew only where a clause has changed: somebody may have put the focus into it.
       const clauses = JSON.stringify([standing.clauses, standing.verdict, standing.final]);
-      if (clauses !== this.clauses) { this.clauses = clauses; this.marks = []; this.fillClauses(standing); }
-      this.sum(standing);
+      if (clauses !== this.clauses) { this.clauses = clauses; this.items = []; this.fillClauses(standing); }
       this.fillMetrics(standing);
     }
-    for (const [item, from] of this.marks) item.classList.toggle("later", from > t + 0.05);
+    if (this.standing) this.judge(this.standing, t);
   }
 
-  sum(standing) {
-    const clauses = standing.clauses || [], judged = clauses.filter((c) => c.standing !== "open").length;
-    say(at("clauses-sum"), clauses.length ? `${judged} of ${clauses.length} judged` + (standing.final ? "" : ` at ${secs(standing.time_s)}`) : "");
+  // The checklist as of the shown time: what was seen later is still open.
+  judge(standing, t) {
+    const newest = t >= Math.min(standing.time_s, this.reel.last_s()) - (standing.final ? 0.05 : BEHIND_SECS), clauses = standing.clauses || [];
+    let judged = 0;
+    for (const row of this.items) {
+      const { clause, item, sign, state, when } = row, [is, at_s] = newest ? [clause.standing, clause.at_s] : this.reel.stood(clause, t), [mark, words, look] = STANDINGS[is] || ["–", plain(is), "na"];
+      if (is !== "open") judged++;
+      const later = !newest && is === "open" && clause.standing !== "open", full = look + (later ? " later" : "");
+      if (item.className !== full) item.className = full;
+      say(sign, mark); say(state, words);
+      row.to = (later ? clause.at_s : at_s) ?? null;
+      when.hidden = row.to === null;
+      const told = when.hidden ? "" : (later ? "→ " : "") + secs(row.to);
+      if (when.hidden || when.textContent === told) continue;
+      say(when, told);
+      when.setAttribute("aria-label", (later ? "go on to " : "show ") + secs(row.to));
+      when.title = later ? "seen later than the time shown" : "";
+    }
+    const moment = newest ? (standing.final ? "" : standing.time_s) : t;
+    say(at("clauses-sum"), clauses.length ? `${judged} of ${clauses.length} judged` + (moment === "" ? "" : ` · as of ${secs(moment)}`) : "");
+    const [mark, look] = VERDICTS[standing.verdict] || ["", ""], verdict = standing.verdict ? (mark ? mark + " " : "") + plain(standing.verdict) : "not yet judged";
+    const early = !newest && Boolean(standing.verdict);
+    say(at("verdict"), early ? "in the end " + verdict : verdict);
+    at("verdict").className = "verdict " + (early ? "" : look);
+    const whole = standing.final ? "of the whole run" : "as of " + secs(standing.time_s);
+    say(at("metrics-when"), whole + (newest ? "" : ", not of the time shown"));
   }
 
   fillClauses(standing) {
     const list = at("clauses"), kept = list.scrollTop;
     list.textContent = "";
     const clauses = standing.clauses || [];
-    const sign = at("verdict"), verdict = standing.verdict, [mark, look] = VERDICTS[verdict] || ["", ""];
-    sign.className = "verdict " + look;
-    say(sign, verdict ? (mark ? mark + " " : "") + plain(verdict) : "not yet judged");
     for (const [part, title] of [["setup", "Did it happen?"], ["outcome", "What the robot did"]]) {
       const mine = clauses.filter((c) => c.part === part);
       if (mine.length === 0) continue;
       word("li", title, list, "part");
       for (const c of mine) {
-        const [sign, state, look] = STANDINGS[c.standing] || ["–", plain(c.standing), "na"];
-        const item = word("li", "", list, look);
+        const item = word("li", "", list);
         put(word("span", "", item, "text"), c.text);
-        word("b", sign, item).setAttribute("aria-hidden", "true");
-        word("span", state, item, "tag state");
-        if (c.at_s !== null && c.at_s !== undefined) { this.timeButton(c.at_s, item); this.marks.push([item, c.at_s]); }
+        const sign = word("b", "", item), state = word("span", "", item, "tag state");
+        sign.setAttribute("aria-hidden", "true");
+        const row = { clause: c, item, sign, state, to: null };
+        row.when = press("", item, () => this.go(row.to), "when");
         word("code", c.id, item, "id");
+        this.items.push(row);
       }
     }
     if (clauses.length === 0) word("li", "nothing to judge", list, "na");
@@ -120,7 +142,6 @@ export class Panel {
     }
     this.metrics = metrics;
     metrics.forEach((m, i) => say(this.cells[i], value(m)));
-    say(at("metrics-when"), standing.final ? "of the whole run" : "as of " + secs(standing.time_s));
   }
 
   // The events around the shown time; all of them where they are few.

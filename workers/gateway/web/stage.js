@@ -22,7 +22,7 @@ export class Stage {
     press("+", this.zoom, () => this.view.camera.zoom(1.4)).setAttribute("aria-label", "zoom in");
     press("−", this.zoom, () => this.view.camera.zoom(1 / 1.4)).setAttribute("aria-label", "zoom out");
     this.whole = press("whole map", this.zoom, () => this.toggleMap());
-    this.notice = word("p", "", this.view.map, "notice"); this.notice.hidden = true; this.notice.setAttribute("role", "status");
+    this.notice = word("p", "", null, "notice"); this.view.map.after(this.notice); this.notice.hidden = true; this.notice.setAttribute("role", "status");
     this.loading = word("p", "loading…", this.view.map, "loading"); this.loading.hidden = true;
     this.line = new Line(run, {
       frame: (frame) => this.frame(frame), text: (message) => this.text(message),
@@ -49,7 +49,7 @@ export class Stage {
     switch (message.op) {
       case "scene": this.setScene(message.scene); break;
       case "events": this.events(message); break;
-      case "standing": this.reel.standing = message; break;
+      case "standing": this.reel.stand(message); break;
       case "gap": this.reel.lost += Math.max(0, message.to - message.from + 1); break;
       case "lag": this.lag = message.ms; this.skipped = message.skipped; break;
       case "status": this.status = { level: LEVELS.includes(message.level) ? message.level : "info", text: String(message.text), until: message.level === "error" ? Infinity : performance.now() + STATUS_MS }; this.tell(); break;
@@ -134,7 +134,7 @@ export class Stage {
     if (!this.reel.scene) return;
     const moment = this.reel.moment(t, rate);
     this.view.moment = moment;
-    this.view.draw(this.reel, moment, t);
+    this.view.draw(this.reel, moment, t, rate);
     this.loading.hidden = !(moment ? moment.loading : this.reel.flying > 0 && !this.reel.live());
     this.whole.hidden = this.view.camera.mode === "whole" && !this.view.camera.area;
     say(this.whole, this.view.camera.mode === "whole" && this.view.camera.area ? "where it happens" : "whole map");

@@ -1,9 +1,9 @@
 // One map with one run on it: the floor as a picture, the crowd as points, everything else on a canvas above.
-import { Camera } from "./camera.js";
+import { Camera, drawnAlike } from "./camera.js";
 import { Points } from "./gl.js";
-import { Labels } from "./labels.js";
+import { Labels, Walls } from "./labels.js";
 import { BEAMS, NOTHING, THERE, place, pose } from "./wire.js";
-import { CROWD, POINTS, SAYS, color, ink, runUrl, word } from "./words.js";
+import { CROWD, POINTS, SAYS, color, ink, plain, runUrl, word } from "./words.js";
 
 const TRAIL_SECS = 4;
 // Above this many agents only the robot and whoever is followed have a trail.
@@ -14,6 +14,10 @@ const LEAST_PX = 6, LEAST_CROWD_PX = 3, LEAST_ROBOT_PX = 7, LEAST_POINT_PX = 1.5
 const MOST_BUBBLES = 40, MOST_GAZES = 400;
 const PICK_PX = 14;
 const PERSON_M = 0.3;
+// Smallest scale at which doors have their names, px per meter, and the largest number of doors that have them.
+const DOOR_PX_PER_M = 24, MOST_DOORS = 60;
+// The picture has jumped when its time differs by more than this from the one before, s, and by this many seconds of playback.
+const JUMP_SECS = 0.3, JUMP_PLAYED = 0.5;
 // More pixels than these cost time and show nothing more.
 const MOST_RATIO = 2;
 
@@ -30,6 +34,7 @@ export class View {
     this.caption = word("figcaption", "", this.figure);
     this.g = this.canvas.getContext("2d");
     this.labels = new Labels();
+    this.floor.addEventListener("load", () => { this.labels.walls = Walls.of(this.floor, this.scene.place.box); changed(); });
     this.camera = new Camera(this.map, changed, (x, y) => this.pick(x, y, picked));
     this.points = undefined; this.people = []; this.renderer = "canvas"; this.followed = null;
     this.changed = changed;
@@ -45,8 +50,7 @@ export class View {
     this.radius = new Map(scene.agents.map((a) => [a.number, a.radius_m]));
     this.names = new Map(scene.agents.map((a) => [a.number, a.id.replace(/^human_/, "h")]));
     this.area = false;
-    if (!this.camera.place || this.camera.place.box.join() !== scene.place.box.join()) this.camera.load(scene.place);
-    else this.camera.place = scene.place;
+    if (!this.camera.place || !drawnAlike(this.camera.place, scene.place)) this.camera.load(scene.place);
   }
 
   /** Shows the part of the place that another map shows. */
@@ -67,7 +71,7 @@ export class View {
   }
 
   /** Draws a time of a run; `moment` is null while nothing is known. */
-  draw(reel, moment, t) {
+  draw(reel, moment, t, rate) {
     const { camera, g } = this, ratio = Math.min(MOST_RATIO, devicePixelRatio || 1);
     if (!this.scene || !camera.place) return;
     if (moment) this.aim(moment.a);
@@ -75,14 +79,25 @@ export class View {
       const i = place(moment.a, this.followed, 0), at = i < 0 ? null : pose(moment.a, moment.b, moment.u, i);
       if (at) camera.center(at.x, at.y);
     }
-    const w = Math.round(camera.w * ratio), h = Math.round(camera.h * ratio), [bx, by] = camera.place.box;
-    if (this.canvas.width !== w || this.canvas.height !== h) { this.canvas.width = w; this.canvas.height = h; }
-    this.floor.style.transform = `translate(${(bx - camera.x) * camera.k}px, ${(by - camera.y) * camera.k}px) scale(${camera.k})`;
+    const w = Math.round(camera.w * ratio), h = Math.round(camera.h * ratio);
+    if (this.canvas.width !== w || this.canvas.height !== h) {
+      this.canvas.width = w; this.canvas.height = h;
+      // Sized with the picture, not with the map: until the next picture all layers stay where they fit each other.
+      for (const layer of [this.canvas, this.crowd]) { layer.style.width = camera.w + "px"; layer.style.height = camera.h + "px"; }
+    }
+    this.floor.style.transform = camera.floor();
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, camera.w, camera.h);
     this.drawWay(); this.drawDoors(reel, t);
-    if (moment) this.drawAgents(reel, moment, ratio);
+    if (moment) { this.settle(moment, rate); this.drawAgents(reel, moment, ratio); }
     this.drawScale();
+  }
+
+  // After a jump in time words stand where that moment alone puts them: the same moment is the same picture.
+  settle({ a, b, u }, rate) {
+    const shown = b ? a.t + (b.t - a.t) * u : a.t;
+    if (!(Math.abs(shown - this.shown) <= JUMP_SECS + JUMP_PLAYED * rate)) this.labels.forget();
+    this.shown = shown;
   }
 
   drawAgents(reel, moment, ratio) {
@@ -99,7 +114,7 @@ export class View {
       const p = pose(a, b, u, i);
       if (!p) continue;
       const r = this.radius.get(number) ?? PERSON_M;
-      p.wx = p.x; p.wy = p.y; p.x = this.camera.sx(p.wx); p.y = this.camera.sy(p.wy); p.guess = i;
+      [p.x, p.y] = [this.camera.sx(p.x, p.y), this.camera.sy(p.x, p.y)]; p.yaw = this.camera.turn(p.yaw); p.guess = i;
       p.r = Math.max(this.camera.px(r), number === 0 ? LEAST_ROBOT_PX : many ? LEAST_POINT_PX : a.n > CROWD ? LEAST_CROWD_PX : LEAST_PX);
       people.push(p);
     }
@@ -124,9 +139,19 @@ export class View {
       const says = p.says && bubbles < MOST_BUBBLES ? SAYS[p.says] || "" : "";
       if (says) bubbles++;
       const named = n <= CROWD || p.number === 0 || p.number === this.followed;
-      return { number: p.number, x: p.x, y: p.y, r: p.r, said: says, name: named ? this.names.get(p.number) || "" : "", color: ink(p.number) };
+      return { number: p.number, x: p.x, y: p.y, r: p.r, said: says, name: named ? this.names.get(p.number) || "" : "", color: ink(p.number), must: p.number === 0 || p.number === this.followed };
     });
-    this.labels.draw(this.g, n > POINTS ? said.filter((p) => p.said || p.name) : said, this.camera.w, this.camera.h);
+    this.labels.draw(this.g, n > POINTS ? said.filter((p) => p.said || p.name) : said, this.doorNames(), this.camera, performance.now());
+  }
+
+  // Doors whose names have room, each with the middle of its opening.
+  doorNames() {
+    const doors = this.scene.doors || [], { camera } = this;
+    if (doors.length > MOST_DOORS || camera.px(1) < DOOR_PX_PER_M) return [];
+    return doors.map(({ id, from, to }) => {
+      const x = (from[0] + to[0]) / 2, y = (from[1] + to[1]) / 2;
+      return { number: "door " + id, x: camera.sx(x, y), y: camera.sy(x, y), r: 5, name: plain(id) };
+    });
   }
 
   ring(x, y, r, look, wide, dash) {
@@ -177,7 +202,7 @@ export class View {
       for (const f of frames) {
         const i = place(f, p.number, p.guess), there = i >= 0 && (f.words[8 * i + 7] & THERE);
         if (!there) { pen = false; continue; }
-        const x = this.camera.sx(f.floats[4 * i]), y = this.camera.sy(f.floats[4 * i + 1]);
+        const wx = f.floats[4 * i], wy = f.floats[4 * i + 1], x = this.camera.sx(wx, wy), y = this.camera.sy(wx, wy);
         if (pen) g.lineTo(x, y); else g.moveTo(x, y);
         pen = true;
       }
@@ -199,7 +224,8 @@ export class View {
       const range = frame.scan[beam];
       if (range === NOTHING) continue;
       const angle = at.yaw + beam * Math.PI / 180;
-      g.fillRect(this.camera.sx(at.x + Math.cos(angle) * range / 1000) - 1.25, this.camera.sy(at.y + Math.sin(angle) * range / 1000) - 1.25, 2.5, 2.5);
+      const x = at.x + Math.cos(angle) * range / 1000, y = at.y + Math.sin(angle) * range / 1000;
+      g.fillRect(this.camera.sx(x, y) - 1.25, this.camera.sy(x, y) - 1.25, 2.5, 2.5);
     }
     g.globalAlpha = 1;
   }
@@ -223,11 +249,11 @@ export class View {
     const { g, camera, scene } = this;
     if (scene.way && scene.way.length > 1) {
       g.beginPath();
-      scene.way.forEach(([x, y], i) => { if (i) g.lineTo(camera.sx(x), camera.sy(y)); else g.moveTo(camera.sx(x), camera.sy(y)); });
+      scene.way.forEach(([x, y], i) => { if (i) g.lineTo(camera.sx(x, y), camera.sy(x, y)); else g.moveTo(camera.sx(x, y), camera.sy(x, y)); });
       g.strokeStyle = "#0072B2"; g.lineWidth = 1.6; g.globalAlpha = 0.65; g.setLineDash([3, 5]); g.stroke(); g.setLineDash([]); g.globalAlpha = 1;
     }
     if (!scene.goal) return;
-    const x = camera.sx(scene.goal[0]), y = camera.sy(scene.goal[1]);
+    const x = camera.sx(...scene.goal), y = camera.sy(...scene.goal);
     this.ring(x, y, 9, "#0072b2", 1.5, []);
     g.fillStyle = "#0072b2";
     g.beginPath(); g.rect(x - 3, y - 6, 1.8, 12); g.moveTo(x - 1.5, y - 6); g.lineTo(x + 6, y - 2.8); g.lineTo(x - 1.5, y + 0.5); g.fill();
@@ -237,7 +263,7 @@ export class View {
     const { g, camera } = this;
     for (const door of this.scene.doors || []) {
       const open = reel.open(door, t), part = open ? 0.14 : 0.5;
-      const [x1, y1] = [camera.sx(door.from[0]), camera.sy(door.from[1])], [x2, y2] = [camera.sx(door.to[0]), camera.sy(door.to[1])];
+      const [x1, y1] = [camera.sx(...door.from), camera.sy(...door.from)], [x2, y2] = [camera.sx(...door.to), camera.sy(...door.to)];
       const dx = (x2 - x1) * part, dy = (y2 - y1) * part;
       g.beginPath(); g.moveTo(x1, y1); g.lineTo(x1 + dx, y1 + dy); g.moveTo(x2, y2); g.lineTo(x2 - dx, y2 - dy);
       g.strokeStyle = "#a8641c"; g.lineWidth = open ? 4 : 5; g.stroke();
@@ -262,7 +288,7 @@ export class View {
     let best = null, least = Infinity;
     for (let i = 0; i < m.a.n; i++) {
       if (!(m.a.words[8 * i + 7] & THERE)) continue;
-      const d = Math.hypot(this.camera.sx(m.a.floats[4 * i]) - x, this.camera.sy(m.a.floats[4 * i + 1]) - y);
+      const wx = m.a.floats[4 * i], wy = m.a.floats[4 * i + 1], d = Math.hypot(this.camera.sx(wx, wy) - x, this.camera.sy(wx, wy) - y);
       if (d < least) { least = d; best = m.a.words[8 * i + 6]; }
     }
     const reach = Math.max(PICK_PX, this.camera.px(this.radius.get(best) ?? PERSON_M) * 1.3);
