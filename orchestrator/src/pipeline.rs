@@ -149,6 +149,7 @@ mod tests {
             pinned: BTreeMap::new(),
             settings: BTreeMap::new(),
             review: false,
+            order: None,
         }
     }
 

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
 use socrates_model::job::JobKey;
 use socrates_model::wire::Hello;
 
@@ -11,7 +12,7 @@ use crate::state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenar
 use crate::turn::Turn;
 
 /// What a store holds.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Number of the reign that begins.
     pub epoch: u64,

@@ -34,6 +34,7 @@ pub(crate) fn spec(id: &str) -> ScenarioSpec {
         pinned: BTreeMap::new(),
         settings: BTreeMap::new(),
         review: false,
+        order: None,
     }
 }
 

@@ -132,6 +132,7 @@ impl Bench {
             pinned: BTreeMap::new(),
             settings: author.into_iter().chain(settings.clone()).collect(),
             review: false,
+            order: None,
         };
         let submit = Submit { batch: "b".to_owned(), scenarios: vec![spec] };
         bench.send(|to| Event::Submit { submit, to });

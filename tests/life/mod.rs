@@ -5,6 +5,7 @@ mod bad_input;
 mod bags;
 mod batches;
 mod bundles;
+mod clusters;
 mod comparing;
 mod doors;
 mod evaluations;

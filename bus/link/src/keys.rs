@@ -35,6 +35,8 @@ pub const SUBMIT: &str = "rpc/submit";
 pub const CONTROL: &str = "rpc/control";
 /// A client asks how things stand: `wire::StatusAsk` → `wire::StatusReply`.
 pub const STATUS: &str = "rpc/status";
+/// A client asks what became of scenarios: `wire::PastAsk` → `wire::PastPart`.
+pub const PAST: &str = "rpc/past";
 /// A part of an artifact is fetched: `wire::BlobGet` → `wire::BlobPart`.
 pub const BLOB_GET: &str = "rpc/blob_get";
 /// A part of an artifact is stored: `wire::BlobPut` → `u64`, bytes held so far.
@@ -44,7 +46,7 @@ pub const BLOB_PUT: &str = "rpc/blob_put";
 pub const SERVE_RUN: &str = "serve/run";
 
 /// Every query key of the orchestrator, in the order in which they are declared.
-pub const RPC: [&str; 10] = [HELLO, ACQUIRE, BEAT, REPORT, RELEASE, SUBMIT, CONTROL, STATUS, BLOB_GET, BLOB_PUT];
+pub const RPC: [&str; 11] = [HELLO, ACQUIRE, BEAT, REPORT, RELEASE, SUBMIT, CONTROL, STATUS, PAST, BLOB_GET, BLOB_PUT];
 
 /// Presence tokens of every worker.
 pub const WORKERS_ALIVE: &str = "live/worker/**";

@@ -302,6 +302,9 @@ pub struct ScenarioSpec {
     /// Whether a person looks at the proposal before it goes on.
     #[serde(default)]
     pub review: bool,
+    /// Content address of what else its bundle is written from; none where whoever submits writes it themselves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub order: Option<Digest>,
 }
 
 /// A client submits scenarios under one batch name.
@@ -431,6 +434,60 @@ pub struct Notice {
     /// Working time, ms.
     #[serde(default)]
     pub wall_ms: u64,
+}
+
+/// A client asks what became of scenarios, to write their bundles.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PastAsk {
+    /// How scenarios stand, in order of submission.
+    Ends {
+        /// The first place that is asked for, from 0.
+        from: u64,
+    },
+    /// Everything that was tried for a scenario.
+    Rows {
+        /// Which.
+        scenario: ScenarioId,
+        /// From this byte on.
+        offset: u64,
+    },
+}
+
+/// Answer to [`PastAsk`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PastPart {
+    /// At most 400 scenarios from the place on that was asked for; none when there are no more.
+    Ends(Vec<PastEnd>),
+    /// A part of the rows of a scenario, at most 48 KiB of a JSON text; none where it is unknown.
+    Rows {
+        /// Digest of the whole text: parts of another moment have another one.
+        digest: Digest,
+        /// Whole length, bytes.
+        len: u64,
+        /// The bytes.
+        #[serde(with = "byte_text")]
+        bytes: Vec<u8>,
+    },
+    /// It cannot be told.
+    Unknown {
+        /// Why.
+        why: String,
+    },
+}
+
+/// How one scenario stands.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PastEnd {
+    /// Place in the order of submission, from 0.
+    pub place: u64,
+    /// Which.
+    pub scenario: ScenarioId,
+    /// Batch that it was submitted with.
+    pub batch: String,
+    /// How it ended; none while it is not done.
+    pub end: Option<ScenarioEnd>,
 }
 
 /// Asks for a part of an artifact.

@@ -8,9 +8,11 @@ mod beside;
 mod collect;
 mod page;
 mod read;
+mod whole;
 
 pub(crate) use page::page;
 pub(crate) use read::{changed, commands, is_bundle, manifest, read, read_some, reports, reports_in};
+pub(crate) use whole::{copy, whole};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

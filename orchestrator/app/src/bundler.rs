@@ -20,7 +20,7 @@ use tokio::sync::Notify;
 
 use crate::batch::Card;
 use crate::bundle;
-use crate::conclude::bundled;
+use crate::conclude::Finished;
 use crate::exit::Complaint;
 use crate::output::Printer;
 use crate::prepare::Prepared;
@@ -212,7 +212,8 @@ impl Shared {
             *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
         }
         let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
-        let bundle = bundled(&dir, &self.work, id, prepared, *seed, reader.as_ref().ok_or_else(gone)?, false)?;
+        let finished = Finished { dir: &dir, work: &self.work, id, prepared, seed: *seed, alone: false };
+        let bundle = finished.from_store(reader.as_ref().ok_or_else(gone)?)?;
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
         Card::of(&bundle, Arc::clone(location), id.as_str(), &reports)
     }

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use socrates_link::{Bus, LinkError, call, keys};
-use socrates_model::wire::{ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted};
+use socrates_model::wire::{PastAsk, PastEnd, PastPart, ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted};
+use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
 use crate::exit::Complaint;
@@ -12,6 +13,10 @@ use crate::exit::Complaint;
 const CALL: Duration = Duration::from_secs(2);
 /// How long the orchestrator may be away before the run is given up.
 pub(crate) const AWAY: Duration = Duration::from_secs(60);
+/// Times that the rows of a scenario may change while they are read.
+const MOMENTS: u32 = 20;
+/// Rows of one scenario that are taken, bytes, at most.
+const ROWS_MOST: u64 = 256 << 20;
 /// Scenarios in one submit message; keeps it under 64 KiB.
 const SUBMIT_AT_ONCE: usize = 40;
 
@@ -44,4 +49,83 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
 /// One page of statuses.
 pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
     call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
+}
+
+/// How every scenario stands, in order of submission.
+pub(crate) async fn ends(bus: &dyn Bus) -> Result<Vec<PastEnd>, Complaint> {
+    let mut all: Vec<PastEnd> = Vec::new();
+    loop {
+        let from = all.last().map_or(0, |end| end.place.saturating_add(1));
+        match past(bus, PastAsk::Ends { from }).await? {
+            PastPart::Ends(ends) if ends.is_empty() => return Ok(all),
+            // Whoever answers with earlier places would be asked without end.
+            PastPart::Ends(ends) if ends.iter().any(|end| end.place < from) => {
+                return Err(Complaint::resumes(format!(
+                    "the orchestrator told places before {from}, which was asked for"
+                )));
+            }
+            PastPart::Ends(ends) => all.extend(ends),
+            PastPart::Rows { .. } => return Err(another()),
+            PastPart::Unknown { why } => return Err(Complaint::resumes(why)),
+        }
+    }
+}
+
+/// Everything that was tried for a scenario, as the JSON text of its rows.
+pub(crate) async fn rows(bus: &dyn Bus, scenario: &ScenarioId) -> Result<Vec<u8>, Complaint> {
+    let mut text: Vec<u8> = Vec::new();
+    let mut moment = None;
+    let mut moments = 0_u32;
+    loop {
+        let offset = u64::try_from(text.len()).unwrap_or(u64::MAX);
+        match past(bus, PastAsk::Rows { scenario: scenario.clone(), offset }).await? {
+            PastPart::Rows { digest, .. } if moment.is_some_and(|moment| moment != digest) => {
+                // Of another moment: from the beginning.
+                text.clear();
+                moment = None;
+                moments += 1;
+                if moments > MOMENTS {
+                    return Err(Complaint::resumes(format!(
+                        "the rows of `{scenario}` change faster than they can be read"
+                    )));
+                }
+            }
+            PastPart::Rows { digest, len, bytes } => {
+                if len > ROWS_MOST {
+                    let what = format!("the rows of `{scenario}` have {len} bytes, more than {ROWS_MOST}");
+                    return Err(Complaint::resumes(what));
+                }
+                moment = Some(digest);
+                let ended = bytes.is_empty();
+                text.extend(bytes);
+                if ended || u64::try_from(text.len()).unwrap_or(u64::MAX) >= len {
+                    return if Digest::of(&text) == digest {
+                        Ok(text)
+                    } else {
+                        Err(Complaint::resumes(format!("the rows of `{scenario}` came torn")))
+                    };
+                }
+            }
+            PastPart::Ends(_) => return Err(another()),
+            PastPart::Unknown { why } => return Err(Complaint::resumes(why)),
+        }
+    }
+}
+
+/// One question about the past, asked again while the orchestrator is away.
+async fn past(bus: &dyn Bus, ask: PastAsk) -> Result<PastPart, Complaint> {
+    let started = Instant::now();
+    loop {
+        match call::<PastAsk, PastPart>(bus, keys::PAST, "past", &ask, CALL).await {
+            Ok(part) => return Ok(part),
+            Err(why) if why.is_transient() && started.elapsed() < AWAY => {
+                tokio::time::sleep(Duration::from_millis(100)).await
+            }
+            Err(why) => return Err(Complaint::resumes(format!("the orchestrator cannot be asked: {why}"))),
+        }
+    }
+}
+
+fn another() -> Complaint {
+    Complaint::resumes("the orchestrator answered another question than was asked")
 }

@@ -4,6 +4,7 @@ use std::ffi::OsStr;
 use std::process::{ExitStatus, Stdio};
 use std::time::Duration;
 
+use socrates_kit::Stop;
 use tokio::process::{Child, ChildStdin, Command};
 use tokio::sync::watch;
 
@@ -21,11 +22,11 @@ pub(crate) fn command(program: impl AsRef<OsStr>) -> Command {
 /// How a child ended; none where it is told to stop before, or nobody can tell it any more.
 pub(crate) async fn ended(
     child: &mut Child,
-    stopped: &mut watch::Receiver<bool>,
+    stopped: &mut watch::Receiver<Stop>,
 ) -> Option<std::io::Result<ExitStatus>> {
     tokio::select! {
         status = child.wait() => Some(status),
-        changed = stopped.wait_for(|stop| *stop) => {
+        changed = stopped.wait_for(|stop| *stop != Stop::Run) => {
             drop(changed);
             None
         }

@@ -4,62 +4,139 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use serde_json::json;
-use socrates_kit::LocalBlobs;
-use socrates_link::{Mode, ZenohConfig};
+use socrates_kit::{Blobs, LocalBlobs};
+use socrates_model::Digest;
+use socrates_model::wire::ScenarioSpec;
 
-use crate::calls;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::files::shell;
+use crate::many::{distinct, wish};
+use crate::order::Order;
 use crate::output::Printer;
-use crate::prepare::{prepare, request_files};
+use crate::prepare::Prepared;
+use crate::run::prepared_all;
 use crate::run_options::RunOptions;
-use crate::variants;
-use crate::wanted::{specs, wanted};
+use crate::wanted::{Wanted, specs, wanted};
 use crate::words::plural;
+use crate::{calls, process, variants};
 
-/// Submits requests and returns; `socrates status ENDPOINT` shows how they stand.
+/// Time for one part of an artifact.
+const PART: Duration = Duration::from_secs(10);
+
+/// Where scenarios are submitted.
+#[derive(Debug, Clone)]
+pub struct SubmitOptions {
+    /// Endpoint of the orchestrator.
+    pub connect: String,
+    /// Namespace.
+    pub namespace: String,
+    /// Name of the batch; without one it is called after what it is made from.
+    pub batch: Option<String>,
+}
+
+/// Submits requests and returns; `socrates status ENDPOINT` shows how they stand, `socrates cluster collect` writes their bundles.
+///
+/// # Errors
+/// No request that can be run, an option that is for runs on this machine, no orchestrator, or one that refuses.
 pub async fn submit(
     talk: &Printer,
     config: &Config,
     requests: &[PathBuf],
-    connect: &str,
-    namespace: &str,
-    seed: u64,
-) -> Result<(), Complaint> {
-    let options = RunOptions::plain(seed);
-    let files = request_files(requests)?;
-    let prepared = files.iter().map(|file| prepare(file, Some(&options), config)).collect::<Result<Vec<_>, _>>()?;
-    let bus = socrates_link::join(ZenohConfig::new(Mode::Client, namespace, "submit").connect(connect)).await.map_err(
-        |why| {
-            Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?")
-                .with_code(Code::Input)
-        },
-    )?;
-    let folder = config.program().temp.join(format!("socrates-submit-{}", std::process::id()));
-    let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
-    let blobs = LocalBlobs::new(&folder, false);
-    let plans = variants::plans(talk, prepared.iter(), seed, options.repeats)?;
-    let specs = specs(&wanted(&prepared, seed, &plans)?, config, &options, &blobs)?;
-    let mut digests: Vec<_> = specs
-        .iter()
-        .flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied()))
-        .collect();
+    to: &SubmitOptions,
+    options: &RunOptions,
+) -> Result<Code, Complaint> {
+    elsewhere(options)?;
+    let (mut prepared, refused) = prepared_all(config, requests, options)?;
+    if prepared.is_empty() {
+        let mut complaint =
+            Complaint::input("none of these requests can be run", "`socrates read FILE` looks at one alone");
+        complaint.causes = refused.iter().flat_map(crate::refused::Refused::lines).collect();
+        return Err(complaint);
+    }
+    for bad in &refused {
+        talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
+    }
+    let names = distinct(prepared.iter().map(|one| one.name.as_str()));
+    prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
+    let (library, _) = wish(&prepared, options);
+    let bus = process::client(&to.connect, &to.namespace, "submit").await?;
+    let folder = tempfile::tempdir_in(&config.program().temp).map_err(|why| ours(why.to_string()))?;
+    let blobs = LocalBlobs::new(folder.path(), false);
+    let plans = variants::plans(talk, prepared.iter(), options.seed, options.repeats)?;
+    let wanted = wanted(&prepared, options.seed, &plans)?;
+    let mut specs = specs(&wanted, config, options, &blobs)?;
+    let orders = orders(&prepared, library, &blobs)?;
+    for (spec, want) in specs.iter_mut().zip(&wanted) {
+        spec.order = order(&prepared, &orders, want).map(|(digest, _)| *digest);
+    }
+    let mut digests: Vec<Digest> = specs.iter().flat_map(inputs).collect();
+    digests.extend(orders.iter().flat_map(|(_, order)| order.contents()));
     digests.sort();
     digests.dedup();
-    let remote = socrates_kit::Blobs::Bus;
     for digest in digests {
         let bytes = blobs.get(&digest).map_err(|why| ours(why.to_string()))?;
-        remote
-            .put(&bus, bytes, Duration::from_secs(10))
+        Blobs::Bus
+            .put(&bus, bytes, PART)
             .await
             .map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
     }
     let count = specs.len();
-    calls::submit(bus.as_ref(), "cluster", specs).await?;
+    let batch = to.batch.clone().unwrap_or_else(|| format!("batch-{}", library.short()));
+    calls::submit(bus.as_ref(), &batch, specs).await?;
     bus.close().await;
-    drop(std::fs::remove_dir_all(&folder));
-    talk.line(&format!("submitted  {} from {}", plural(count, "scenario"), plural(prepared.len(), "request")));
-    talk.line(&format!("next       socrates status {connect}@{namespace}"));
-    talk.result(&json!({ "submitted": count }));
-    Ok(())
+    talk.line(&format!(
+        "submitted  {} from {} as `{batch}`",
+        plural(count, "scenario"),
+        plural(prepared.len(), "request")
+    ));
+    talk.line(&format!("next       socrates status {}@{}", to.connect, to.namespace));
+    let named = shell(std::path::Path::new(&batch));
+    talk.line(&format!("then       socrates cluster collect --connect {} --batch {named} --out library", to.connect));
+    let refusals: Vec<_> = refused.iter().map(crate::refused::Refused::object).collect();
+    talk.result(&json!({ "submitted": count, "batch": batch, "refused": refusals }));
+    Ok(if refused.is_empty() { Code::Ok } else { Code::Input })
+}
+
+/// Refuses options that are for runs on this machine.
+fn elsewhere(options: &RunOptions) -> Result<(), Complaint> {
+    let here = [
+        (options.out.is_some(), "--out", "`cluster collect --out` names the folder"),
+        (options.ask, "--ask", "nobody looks while a cluster works"),
+        (options.view, "--view", "`socrates view ENDPOINT` shows the runs of a cluster"),
+        (options.driver.is_some(), "--driver", "start the driver beside the workers; it finds them by the endpoint"),
+        (options.workers.is_some(), "--workers", "`cluster work --slots` says how many there are"),
+    ];
+    match here.into_iter().find(|(named, ..)| *named) {
+        Some((_, option, hint)) => {
+            Err(Complaint::input(format!("`{option}` is for runs on this machine, not for a cluster"), hint))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The order of each request, with the digest of its text.
+fn orders(prepared: &[Prepared], library: Digest, blobs: &LocalBlobs) -> Result<Vec<(Digest, Order)>, Complaint> {
+    let put = |bytes: &[u8]| blobs.put(bytes).map_err(|why| ours(why.to_string()));
+    let one = |one: &Prepared| {
+        let order = Order::of(one, library, &put)?;
+        Ok((put(order.text()?.as_bytes())?, order))
+    };
+    prepared.iter().map(one).collect()
+}
+
+/// The order of the request that a scenario is made from.
+fn order<'a>(prepared: &[Prepared], orders: &'a [(Digest, Order)], want: &Wanted<'_>) -> Option<&'a (Digest, Order)> {
+    let of = prepared.iter().zip(orders).find(|(one, _)| std::ptr::eq(*one, want.prepared));
+    of.map(|(_, order)| order)
+}
+
+/// What a scenario needs that is stored under its digest.
+fn inputs(spec: &ScenarioSpec) -> Vec<Digest> {
+    let own = [spec.request, spec.location, spec.reading];
+    own.into_iter().chain(spec.pinned.values().copied()).chain(spec.order).collect()
+}
+
+fn ours(why: String) -> Complaint {
+    Complaint::input(why, "").with_code(Code::Ours)
 }

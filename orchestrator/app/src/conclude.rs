@@ -3,32 +3,49 @@
 use std::path::Path;
 
 use socrates_model::job::Stage;
-use socrates_model::{Digest, Family, Fault, JobState, ScenarioId};
+use socrates_model::{Family, Fault, JobState, ScenarioId};
+use socrates_orchestrator::Snapshot;
 use socrates_store::Reader;
 
-use crate::bundle::{self, Bundle, Past};
+use crate::bundle::{self, Bundle, Fetch, Past};
 use crate::exit::{Code, Complaint};
 use crate::history::History;
 use crate::prepare::Prepared;
 use crate::work;
 
-/// The bundle of one finished scenario, written from what the job store and the artifacts of a work folder tell of it. `alone`: no
-/// other is written meanwhile.
-pub(crate) fn bundled(
-    dir: &Path,
-    work: &Path,
-    id: &ScenarioId,
-    prepared: &Prepared,
-    seed: u64,
-    reader: &Reader,
-    alone: bool,
-) -> Result<Bundle, Complaint> {
-    let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
-    let rows = reader.scenario(id).map_err(work::unread)?;
-    let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
-    let (history, blobs) = (History::of_rows(rows), work::blobs(work));
-    let fetch = |digest: &Digest| work::fetch(&blobs, digest);
-    conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch: &fetch, work, alone })
+/// A finished scenario of which a bundle is to be written.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Finished<'a> {
+    /// Folder of the bundle.
+    pub(crate) dir: &'a Path,
+    /// Work folder on the same file system.
+    pub(crate) work: &'a Path,
+    /// Which.
+    pub(crate) id: &'a ScenarioId,
+    /// What it is made from.
+    pub(crate) prepared: &'a Prepared,
+    /// Its seed.
+    pub(crate) seed: u64,
+    /// Whether no other is written meanwhile.
+    pub(crate) alone: bool,
+}
+
+impl Finished<'_> {
+    /// The bundle, written from what the job store and the artifacts of the work folder tell of it.
+    pub(crate) fn from_store(&self, reader: &Reader) -> Result<Bundle, Complaint> {
+        let rows = reader.scenario(self.id).map_err(work::unread)?;
+        let blobs = work::blobs(self.work);
+        self.from_rows(rows, &|digest| work::fetch(&blobs, digest))
+    }
+
+    /// The bundle, written from these rows, with artifacts from wherever they are.
+    pub(crate) fn from_rows(&self, rows: Snapshot, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
+        let Self { dir, work, id, prepared, seed, alone } = *self;
+        let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
+        let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
+        let history = History::of_rows(rows);
+        conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch, work, alone })
+    }
 }
 
 /// Writes the bundle, or says why there is none.

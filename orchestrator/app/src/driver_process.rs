@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::process::Stdio;
 use std::time::Duration;
 
+use socrates_kit::Stop;
 use socrates_link::Presence;
 use tokio::process::Child;
 use tokio::sync::{mpsc, watch};
@@ -62,7 +63,7 @@ impl DriverCommand {
         self,
         mut child: Child,
         mut claims: Presence,
-        mut stopped: watch::Receiver<bool>,
+        mut stopped: watch::Receiver<Stop>,
         report: mpsc::Sender<Complaint>,
     ) {
         let mut idle = 0;

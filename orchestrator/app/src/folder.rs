@@ -20,6 +20,42 @@ const SOCKETS: &str = "socrates-";
 /// Longest path of a socket that every system takes, bytes; the bus puts `.lock` behind it for a moment.
 const LONGEST_SOCKET: usize = 98;
 
+/// File systems that several machines see at once, by the number that the system has for each: what one writes, another may see late or
+/// torn, and locks may hold on one machine alone.
+const SHARED: [(i64, &str); 9] = [
+    (0x6969, "NFS"),
+    (0x0BD0_0BD0, "Lustre"),
+    (0xFF53_4D42, "CIFS"),
+    (0xFE53_4D42, "SMB"),
+    (0x4750_4653, "GPFS"),
+    (0x1983_0326, "BeeGFS"),
+    (0x00C3_6400, "Ceph"),
+    (0x5346_414F, "AFS"),
+    (0x0102_1997, "9p"),
+];
+
+/// Makes the folder of a store that must survive, and refuses one that other machines see as well.
+pub(crate) fn of_one_machine(dir: &Path) -> Result<(), Complaint> {
+    let shown = dir.display();
+    let cannot = |why: std::io::Error| {
+        Complaint::input(format!("cannot write into `{shown}`: {why}"), "--dir chooses another folder")
+    };
+    std::fs::create_dir_all(dir).map_err(cannot)?;
+    let kind = rustix::fs::statfs(dir).map_err(|why| cannot(why.into()))?.f_type;
+    shared(kind.into()).map_or(Ok(()), |name| {
+        Err(Complaint::input(
+            format!("`{shown}` lies on {name}, which several machines see: the store of jobs would be lost there sooner or later"),
+            "--dir names a folder on a disk of this machine, such as /var/lib/socrates; artifacts and bundles are fetched with \
+             `socrates cluster collect`, which may write onto a shared folder",
+        ))
+    })
+}
+
+/// Name of a file system that several machines see.
+fn shared(kind: i64) -> Option<&'static str> {
+    SHARED.iter().find(|(number, _)| *number == kind).map(|(_, name)| *name)
+}
+
 /// A work folder that this process alone makes something in, as long as this lives.
 #[derive(Debug)]
 pub(crate) struct Hold {
@@ -136,6 +172,20 @@ mod tests {
         hold.check().unwrap_err();
         drop(hold);
         Hold::take(&work).unwrap();
+    }
+
+    #[test]
+    fn a_store_is_kept_off_file_systems_that_other_machines_see() {
+        assert_eq!((shared(0x6969), shared(0x0BD0_0BD0)), (Some("NFS"), Some("Lustre")));
+        // ext4, xfs, btrfs, tmpfs, overlayfs, zfs.
+        for own in [0xEF53, 0x5846_5342, 0x9123_683E, 0x0102_1994, 0x794C_7630, 0x2FC1_2FC1] {
+            assert_eq!(shared(own), None, "{own:#x}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        of_one_machine(&folder.path().join("new/store")).unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        assert!(of_one_machine(&file.join("store")).unwrap_err().what.contains("file/store"));
     }
 
     #[test]

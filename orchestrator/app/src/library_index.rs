@@ -9,6 +9,7 @@ use socrates_model::likeness::Kind;
 use socrates_model::{Digest, Likeness, Reading, ScenarioEnd, ScenarioId};
 
 use crate::exit::{Code, Complaint};
+use crate::shard::Shard;
 
 /// A scenario is compared with at most so many different ones of its kind, the newest: a library of a hundred thousand is no reason
 /// for ten thousand million comparisons.
@@ -24,7 +25,7 @@ pub(crate) struct Row {
     /// Name of its request.
     #[serde(default)]
     pub(crate) request: String,
-    /// Its folder.
+    /// Its folder in the library.
     pub(crate) bundle: String,
     /// Verdict, or `failed` where no bundle could be made.
     pub(crate) verdict: ScenarioEnd,
@@ -36,11 +37,30 @@ pub(crate) struct Row {
     pub(crate) repeats: Option<ScenarioId>,
 }
 
+impl Row {
+    /// The row of somebody who looks from outside: its folder with that of the library before it.
+    pub(crate) fn seen_from(&self, root: &Path) -> Self {
+        Self { bundle: root.join(self.scenario.as_str()).display().to_string(), ..self.clone() }
+    }
+}
+
+/// Which share of a batch a library is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Part {
+    /// Which share.
+    pub(crate) shard: Shard,
+    /// What the whole batch is made from.
+    pub(crate) whole: Digest,
+}
+
 /// A finished library.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Library {
     /// What it was made from.
     pub(crate) wish: Digest,
+    /// Which share of a batch it is; none where it is whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) shard: Option<Part>,
     /// Scenarios asked for.
     pub(crate) count: u64,
     /// Readings of its requests.
@@ -52,6 +72,18 @@ pub(crate) struct Library {
 /// The library of a folder, if it is one.
 pub(crate) fn read(root: &Path) -> Option<Library> {
     serde_json::from_str(&std::fs::read_to_string(root.join(FILE)).ok()?).ok()
+}
+
+/// The same of a folder that must be one.
+///
+/// # Errors
+/// A list that is gone or cannot be understood, with file and line.
+pub(crate) fn read_whole(root: &Path) -> Result<Library, Complaint> {
+    let path = root.join(FILE);
+    let hint = "the list was changed by hand or is damaged: make the library again in an empty folder";
+    let bad = |why: String| Complaint::input(format!("`{}`: {why}", path.display()), hint);
+    let text = std::fs::read_to_string(&path).map_err(|why| bad(why.to_string()))?;
+    serde_json::from_str(&text).map_err(|why| bad(why.to_string()))
 }
 
 /// Writes the list.
@@ -208,6 +240,7 @@ mod tests {
         };
         let mut library = Library {
             wish: Digest::of(b"wish"),
+            shard: None,
             count: 4,
             readings: Vec::new(),
             scenarios: vec![

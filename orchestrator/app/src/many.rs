@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_model::{ScenarioEnd, ScenarioId, Verdict};
+use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 
-use crate::batch::Card;
 use crate::bundler::{Bundled, Bundler};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
@@ -16,9 +15,10 @@ use crate::place::{self, Place};
 use crate::prepare::Prepared;
 use crate::reading::print_reading;
 use crate::refused::Refused;
-use crate::run_options::RunOptions;
+use crate::run_options::{Require, RunOptions};
 use crate::session::Making;
 use crate::wanted::{Wanted, wanted};
+use crate::words::plural;
 use crate::{bundle, index, layout, library_index, next, variants};
 
 /// A folder of scenarios that was made.
@@ -40,15 +40,14 @@ pub(crate) async fn batch(
 ) -> Result<Library, Complaint> {
     let names = distinct(prepared.iter().map(|one| one.name.as_str()));
     prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
-    let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
-    let chosen = if options.repeats { " repeats" } else { "" };
-    let wishes: Vec<String> =
-        prepared.iter().map(|one| format!("{} {}{chosen}", bundle::wish(one, options.seed), one.name)).collect();
-    let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
+    let share = options.shard.map_or_else(String::new, |shard| format!("-{}-of-{}", shard.index(), shard.of()));
+    let own = || PathBuf::from("runs").join(format!("library-{}{share}", options.seed));
+    let base = options.out.clone().unwrap_or_else(own);
+    let (wish, part) = wish(&prepared, options);
     let root = match place::place(&base, wish, prepared.iter().any(Prepared::is_driven)) {
         Place::Finished(root) => {
             talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
-            let code = finish(talk, options, &root, refused)?;
+            let code = finish(talk, options.require, &root, refused)?;
             return Ok(Library { root, code });
         }
         Place::New(root) => place::told(talk, &base, root),
@@ -61,25 +60,48 @@ pub(crate) async fn batch(
     }
     let prepared: Vec<Arc<Prepared>> = prepared.into_iter().map(Arc::new).collect();
     let plans = variants::plans(talk, prepared.iter().map(AsRef::as_ref), options.seed, options.repeats)?;
-    let wanted = wanted(&prepared, options.seed, &plans)?;
-    let count = u64::try_from(wanted.len()).unwrap_or(u64::MAX);
-    let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
-    // Until the last bundle is written, nobody else makes them.
-    let _hold = Making { talk, config, options, work: &work, wanted: &wanted }.bundled(&mut bundler).await?;
-    let (rows, cards) = rows(talk, &root, &wanted, bundler.finish(talk).await?);
-    let readings = prepared.iter().map(|one| one.reading.clone()).collect();
-    library_index::write(&root, &library_index::Library { wish, count, readings, scenarios: rows })?;
-    if let Err(why) = crate::batch::write(talk, &root, cards)?.figures {
-        talk.warn(&why.what);
+    let mut wanted = wanted(&prepared, options.seed, &plans)?;
+    if let Some(shard) = options.shard {
+        let whole = wanted.len();
+        let mut place = 0..whole;
+        wanted.retain(|_| place.next().is_some_and(|place| shard.holds(place)));
+        talk.line(&format!("shard      {shard} · {} of {}", wanted.len(), plural(whole, "scenario")));
     }
+    let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
+    // Until the last bundle is written, nobody else makes them. Of more shards than scenarios some are empty.
+    let making = Making { talk, config, options, work: &work, wanted: &wanted };
+    let _hold = if wanted.is_empty() { None } else { Some(making.bundled(&mut bundler).await?) };
+    let made = ended(&wanted, bundler.finish(talk).await?);
+    let readings = prepared.iter().map(|one| one.reading.clone()).collect();
+    let list =
+        library_index::Library { wish, shard: part, count: count(wanted.len()), readings, scenarios: Vec::new() };
+    write(talk, &root, list, made)?;
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
-    let code = finish(talk, options, &root, refused)?;
+    let code = finish(talk, options.require, &root, refused)?;
     Ok(Library { root, code })
 }
 
+/// What a folder is made from, and of which batch it is a share. With other options another folder is taken.
+pub(crate) fn wish(prepared: &[Prepared], options: &RunOptions) -> (Digest, Option<library_index::Part>) {
+    let chosen = if options.repeats { " repeats" } else { "" };
+    let wishes: Vec<String> =
+        prepared.iter().map(|one| format!("{} {}{chosen}", bundle::wish(one, options.seed), one.name)).collect();
+    let whole = Digest::of(wishes.join("\n").as_bytes());
+    match options.shard {
+        Some(shard) => {
+            (Digest::of(format!("{whole} shard {shard}").as_bytes()), Some(library_index::Part { shard, whole }))
+        }
+        None => (whole, None),
+    }
+}
+
+fn count(scenarios: usize) -> u64 {
+    u64::try_from(scenarios).unwrap_or(u64::MAX)
+}
+
 /// The names, of which those that an earlier one has already get a number.
-fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub(crate) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken: BTreeSet<String> = BTreeSet::new();
     let mut found = Vec::new();
     for name in names {
@@ -95,44 +117,69 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     found
 }
 
-/// The list of all scenarios, in order of submission, and the cards of those that have a bundle.
-fn rows(
+/// A scenario of a library: which, of which request, and what became of it: the card of its bundle, or why there is none.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    /// Which.
+    pub(crate) scenario: ScenarioId,
+    /// Name of its request.
+    pub(crate) request: String,
+    /// What became of it.
+    pub(crate) what: Bundled,
+}
+
+/// What became of the scenarios, in their order. Those of which nothing is known are left out.
+fn ended(wanted: &[Wanted<'_>], mut bundled: BTreeMap<ScenarioId, Bundled>) -> Vec<Ended> {
+    let one = |want: &Wanted<'_>| {
+        let what = bundled.remove(&want.id)?;
+        Some(Ended { scenario: want.id.clone(), request: want.prepared.name.clone(), what })
+    };
+    wanted.iter().filter_map(one).collect()
+}
+
+/// Writes the list, the page and the tables of a folder whose bundles are written. The list is filled with the scenarios, which stand
+/// in their order.
+pub(crate) fn write(
     talk: &Printer,
     root: &Path,
-    wanted: &[Wanted<'_>],
-    mut bundled: BTreeMap<ScenarioId, Bundled>,
-) -> (Vec<library_index::Row>, BTreeMap<String, Card>) {
-    let (mut rows, mut cards) = (Vec::new(), BTreeMap::new());
+    mut list: library_index::Library,
+    made: Vec<Ended>,
+) -> Result<(), Complaint> {
+    let mut cards = BTreeMap::new();
     let mut repeats = library_index::Repeats::default();
-    for want in wanted {
-        let Some(bundled) = bundled.remove(&want.id) else { continue };
-        let dir = root.join(want.id.as_str());
-        let (verdict, repeats, reason) = match bundled {
+    for Ended { scenario, request, what } in made {
+        let (verdict, repeats, reason) = match what {
             Ok(card) => {
-                let earlier = repeats.of(&want.id, card.likeness.clone());
+                let earlier = repeats.of(&scenario, card.likeness.clone());
                 let verdict = ScenarioEnd::Judged(card.verdict);
-                cards.insert(want.id.to_string(), card);
+                cards.insert(scenario.to_string(), card);
                 (verdict, earlier, String::new())
             }
             Err(why) => {
                 let reason = why.short();
-                let earlier = repeats.of_failed(&want.id, &want.prepared.name, &reason);
+                let earlier = repeats.of_failed(&scenario, &request, &reason);
                 match &earlier {
-                    Some(first) => talk.warn(&format!("{}: failed as `{first}` did", want.id)),
-                    None => talk.warn(&format!("{}: {why}", want.id)),
+                    Some(first) => talk.warn(&format!("{scenario}: failed as `{first}` did")),
+                    None => talk.warn(&format!("{scenario}: {why}")),
                 }
                 (ScenarioEnd::Failed, earlier, reason)
             }
         };
-        let request = want.prepared.name.clone();
-        let bundle = dir.display().to_string();
-        rows.push(library_index::Row { scenario: want.id.clone(), request, bundle, verdict, reason, repeats });
+        let bundle = scenario.to_string();
+        list.scenarios.push(library_index::Row { scenario, request, bundle, verdict, reason, repeats });
     }
-    (rows, cards)
+    library_index::write(root, &list)?;
+    if list.scenarios.is_empty() {
+        return Ok(());
+    }
+    if let Err(why) = crate::batch::write(talk, root, cards)?.figures {
+        talk.warn(&why.what);
+    }
+    Ok(())
 }
 
 /// Prints what a library holds.
-fn finish(talk: &Printer, options: &RunOptions, root: &Path, refused: &[Refused]) -> Result<Code, Complaint> {
+pub(crate) fn finish(talk: &Printer, require: Require, root: &Path, refused: &[Refused]) -> Result<Code, Complaint> {
     let library = library_index::read(root).ok_or_else(|| {
         Complaint::input(format!("`{}` has no {}", root.display(), library_index::FILE), "run the same command again")
     })?;
@@ -141,17 +188,20 @@ fn finish(talk: &Printer, options: &RunOptions, root: &Path, refused: &[Refused]
     for line in library.told() {
         talk.line(&line);
     }
-    talk.line(&format!("table      {}", root.join(index::FILE).display()));
-    talk.line(&format!("look       {}", root.join(layout::PAGE.path).display()));
+    if !library.scenarios.is_empty() {
+        talk.line(&format!("table      {}", root.join(index::FILE).display()));
+        talk.line(&format!("look       {}", root.join(layout::PAGE.path).display()));
+    }
     talk.line(&format!("next       {}", next::after_batch(root, &library)));
     let whole = verdicts.get(&ScenarioEnd::Judged(Verdict::Realised)).copied().unwrap_or(0) == library.count;
+    let scenarios: Vec<library_index::Row> = library.scenarios.iter().map(|row| row.seen_from(root)).collect();
     talk.result(&json!({
         "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
-        "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
+        "reading": library.readings, "scenarios": scenarios, "verdicts": verdicts, "shard": library.shard.map(|part| part.shard),
         "distinct": library.distinct().count(), "index": root.join(index::FILE).display().to_string(),
         "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
     }));
-    Ok(if options.require.is_met(whole) { Code::Ok } else { Code::NotRealised })
+    Ok(if require.is_met(whole) { Code::Ok } else { Code::NotRealised })
 }
 
 #[cfg(test)]

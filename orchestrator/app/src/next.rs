@@ -114,6 +114,11 @@ fn robots(planners: &[PlannerName]) -> String {
 
 /// The line after a batch: why some failed, else what people say of the runs.
 pub(crate) fn after_batch(root: &Path, library: &Library) -> String {
+    if library.shard.is_some() {
+        // Named by hand: where the others are is not known here.
+        let beside = root.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+        return format!("socrates library merge {} --out library   # once every shard is made", shell(beside));
+    }
     let failed = library.scenarios.iter().any(|row| row.verdict == ScenarioEnd::Failed);
     let what = if failed { "status --failed" } else { "labels page" };
     format!("socrates {what} {}", shell(root))

@@ -13,6 +13,7 @@ use tokio::sync::watch;
 
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::folder;
 use crate::orchestrate::{self, OrchestratorConfig};
 use crate::output::Printer;
 
@@ -31,6 +32,8 @@ pub struct WorkerOptions {
     pub spool: PathBuf,
     /// Leave when standard input closes.
     pub tied: bool,
+    /// Reports outlive a power cut; always so for a worker that is not tied.
+    pub durable: bool,
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     pub inject: String,
 }
@@ -79,8 +82,8 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
         .map_err(|why| Complaint::input(why.to_string(), "for example --inject die_before_report=2"))?;
     settings.host = host();
     // A worker that leaves with its supervisor shares the machine with whoever records its reports.
-    settings.durable = !options.tied;
-    settings.waits_for_disk = !options.tied;
+    settings.durable = !options.tied || options.durable;
+    settings.waits_for_disk = settings.durable;
     if stage == Stage::Simulation && config.text("stream.live") != "off" {
         // Control and stream never share a session, so that a frozen viewer stalls no job.
         settings.live = Some(joined(&options.connect, &options.namespace, "stream", options.tied).await?);
@@ -164,6 +167,10 @@ fn is_local(endpoint: &str) -> bool {
 
 /// Runs the orchestrator until told to leave.
 pub async fn orchestrator(talk: &Printer, config: &Config, options: &OrchestratorOptions) -> Result<(), Complaint> {
+    // What one run makes is made again; what a cluster holds is not.
+    if !options.tied {
+        folder::of_one_machine(&options.dir)?;
+    }
     let bus: Arc<dyn Bus> = match (&options.listen, &options.connect) {
         (Some(listen), None) => {
             reachable(listen, options.insecure)?;
@@ -259,7 +266,8 @@ pub(crate) fn leave(tied: bool) -> watch::Receiver<Stop> {
     shutdown
 }
 
-fn host() -> String {
+/// Name of this machine.
+pub(crate) fn host() -> String {
     std::fs::read_to_string(Path::new("/proc/sys/kernel/hostname"))
         .map(|name| name.trim().to_owned())
         .unwrap_or_default()

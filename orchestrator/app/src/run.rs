@@ -8,7 +8,7 @@ use socrates_model::{Run, Verdict};
 use socrates_store::Reader;
 
 use crate::bundle::{self, Bundle};
-use crate::conclude::bundled;
+use crate::conclude::Finished;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::PastJob;
@@ -23,7 +23,7 @@ use crate::run_options::RunOptions;
 use crate::session::Making;
 use crate::view::viewing::Viewing;
 use crate::wanted::Wanted;
-use crate::{layout, many, next, stages, work};
+use crate::{layout, many, next, shard, stages, work};
 
 /// The shipped request of `demo`.
 const DEMO: (&str, &str) = ("hospital", "elevator");
@@ -106,7 +106,7 @@ pub(crate) async fn library(
 }
 
 /// Requests as they are run, and those that cannot be.
-fn prepared_all(
+pub(crate) fn prepared_all(
     config: &Config,
     requests: &[PathBuf],
     options: &RunOptions,
@@ -153,6 +153,14 @@ async fn made(
 /// Refuses options that do not fit the scenarios, and counts these.
 fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Complaint> {
     pace(&options.pace)?;
+    if options.shard.is_some() {
+        if options.ask {
+            return Err(shard::refused("--ask", "a shard is made where nobody looks"));
+        }
+        if options.view {
+            return Err(shard::refused("--view", "a shard is made where nobody looks"));
+        }
+    }
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
     if options.ask && count != 1 {
         return Err(Complaint::input(
@@ -178,7 +186,7 @@ async fn single_or_batch(
     let count = checked(options, &prepared)?;
     let mut prepared = prepared;
     match prepared.pop() {
-        Some(one) if count == 1 => single(talk, config, options, one).await,
+        Some(one) if count == 1 && options.shard.is_none() => single(talk, config, options, one).await,
         last => {
             prepared.extend(last);
             many::batch(talk, config, options, prepared, &[]).await.map(|library| library.code)
@@ -248,7 +256,7 @@ async fn one(
             (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
         move || -> Result<Bundle, Complaint> {
             let reader = Reader::open(&work::store(&work)).map_err(work::unread)?;
-            bundled(&dir, &work, &id, &prepared, seed, &reader, true)
+            Finished { dir: &dir, work: &work, id: &id, prepared: &prepared, seed, alone: true }.from_store(&reader)
         }
     };
     let want = Wanted { id, index: 0, seed: options.seed, prepared: &prepared };

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use socrates_model::{AuthorSpec, PlannerName, Seeds};
 
+use crate::shard::Shard;
+
 /// What a run has to be for its exit code to be 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Require {
@@ -39,6 +41,8 @@ pub struct RunOptions {
     pub variants: Option<u32>,
     /// Whether variants may repeat one another: one of each seed in turn.
     pub repeats: bool,
+    /// Which share of the scenarios is made; none for all of them.
+    pub shard: Option<Shard>,
     /// Author.
     pub author: Option<AuthorSpec>,
     /// Pace of the simulation: `max`, or simulated seconds per second.
@@ -67,6 +71,7 @@ impl RunOptions {
             planner: Vec::new(),
             variants: None,
             repeats: false,
+            shard: None,
             author: None,
             pace: "max".to_owned(),
             require: Require::Any,

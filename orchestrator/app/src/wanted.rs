@@ -102,5 +102,6 @@ fn spec(
         pinned,
         settings,
         review: prepared.looked_at,
+        order: None,
     })
 }

@@ -55,6 +55,7 @@ fn scenario(id: &str) -> ScenarioSpec {
         pinned: BTreeMap::new(),
         settings: BTreeMap::from([("author".to_owned(), "offline".to_owned())]),
         review: false,
+        order: None,
     }
 }
 

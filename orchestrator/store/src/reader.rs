@@ -18,6 +18,8 @@ pub struct Standing {
     pub place: u64,
     /// Its id.
     pub scenario: ScenarioId,
+    /// The batch that it was submitted with.
+    pub batch: String,
     /// How it ended; none while it is not done.
     pub result: Option<ScenarioEnd>,
 }
@@ -47,20 +49,20 @@ impl Reader {
         let Some(connection) = &self.connection else { return Ok(Vec::new()) };
         let failed = |source| failure(&self.path, source);
         let number = |count: u64| i64::try_from(count).unwrap_or(i64::MAX);
-        let sql = "select place, id, result from scenario where place >= ?1 order by place limit ?2";
+        let sql = "select place, id, batch, result from scenario where place >= ?1 order by place limit ?2";
         let mut statement = connection.prepare_cached(sql).map_err(failed)?;
         let rows = statement
             .query_map(params![number(from), number(limit)], |row| {
-                Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?, row.get::<_, Option<String>>(2)?))
+                Ok((row.get::<_, i64>(0)?, row.get(1)?, row.get(2)?, row.get::<_, Option<String>>(3)?))
             })
             .map_err(failed)?;
         let mut standings = Vec::new();
         for row in rows {
-            let (place, id, result) = row.map_err(failed)?;
+            let (place, id, batch, result): (i64, String, String, Option<String>) = row.map_err(failed)?;
             let Ok(scenario) = ScenarioId::new(id) else { continue };
             let result = serde_json::from_value(result.into())
                 .map_err(|source| StoreError::Row { table: "scenario", source })?;
-            standings.push(Standing { place: u64::try_from(place).unwrap_or(0), scenario, result });
+            standings.push(Standing { place: u64::try_from(place).unwrap_or(0), scenario, batch, result });
         }
         Ok(standings)
     }

@@ -32,6 +32,7 @@ impl Machine {
             pinned: BTreeMap::new(),
             settings: BTreeMap::new(),
             review: false,
+            order: None,
         };
         machine.send(|to| Event::Submit { submit: Submit { batch: "b".to_owned(), scenarios: vec![spec] }, to });
         let ask = Acquire {

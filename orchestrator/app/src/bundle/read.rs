@@ -81,7 +81,7 @@ pub(crate) fn changed(bundle: &Bundle) -> Vec<String> {
 }
 
 /// The manifest, or why this is no bundle.
-fn finished(dir: &Path) -> Result<Manifest, Complaint> {
+pub(super) fn finished(dir: &Path) -> Result<Manifest, Complaint> {
     let path = dir.join(layout::MANIFEST.path);
     if !path.exists() {
         return Err(Complaint::input(

@@ -48,7 +48,9 @@ pub(super) fn missing_input(blobs: &LocalBlobs, submit: &Submit) -> Option<Strin
     submit.scenarios.iter().find_map(|spec| {
         let inputs = [(Role::Request, spec.request), (Role::Location, spec.location), (Role::Reading, spec.reading)];
         let pinned = spec.pinned.iter().map(|(role, digest)| (*role, *digest));
-        let (role, digest) = inputs.into_iter().chain(pinned).find(|(_, digest)| !blobs.has(digest))?;
-        Some(format!("scenario `{}`: its {role} `{digest}` is not among the artifacts; hand it over first", spec.id))
+        let named = inputs.into_iter().chain(pinned).map(|(role, digest)| (role.to_string(), digest));
+        let order = spec.order.map(|digest| ("order".to_owned(), digest));
+        let (what, digest) = named.chain(order).find(|(_, digest)| !blobs.has(digest))?;
+        Some(format!("scenario `{}`: its {what} `{digest}` is not among the artifacts; hand it over first", spec.id))
     })
 }

@@ -10,6 +10,7 @@
 
 mod artifacts;
 mod owner;
+mod past;
 mod reader;
 mod writer;
 
@@ -134,6 +135,8 @@ pub(crate) async fn serve(
             tracing::error!(%why, "artifacts are not served over the bus");
         }
     });
+    let store_file = config.dir.join("jobs.sqlite");
+    tasks.spawn(past::serve(Arc::clone(&bus), bus.serve(keys::PAST).await.context("serving the past")?, store_file));
     let presence = bus.watch_alive(keys::WORKERS_ALIVE).await.context("watching the workers")?;
     tasks.spawn(reader::watch(presence, line));
     let token = bus.declare_alive(&keys::orchestrator_alive(bus.name())).await.context("showing the token")?;

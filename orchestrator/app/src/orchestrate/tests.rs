@@ -77,6 +77,7 @@ impl Site {
             pinned: BTreeMap::new(),
             settings: BTreeMap::new(),
             review: false,
+            order: None,
         }
     }
 

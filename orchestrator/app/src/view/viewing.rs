@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use serde_json::Value;
+use socrates_kit::Stop;
 use tokio::io::{AsyncBufReadExt as _, BufReader};
 use tokio::process::Child;
 use tokio::sync::watch;
@@ -24,7 +25,7 @@ const PAUSE: Duration = Duration::from_millis(200);
 
 /// The viewers' process of a run.
 pub(crate) struct Viewing {
-    stop: watch::Sender<bool>,
+    stop: watch::Sender<Stop>,
     keeper: JoinHandle<()>,
 }
 
@@ -73,7 +74,7 @@ impl Viewing {
         talk.line(&format!("view       {page}"));
         let [foxglove, layout] = ["foxglove", "layout"].map(|key| text(key).unwrap_or_default());
         talk.line(&format!("foxglove   {foxglove} · layout {layout}"));
-        let stop = watch::Sender::new(false);
+        let stop = watch::Sender::new(Stop::Run);
         let keeper = tokio::spawn(keep(start, child, address, stop.subscribe()));
         Ok(Self { stop, keeper })
     }
@@ -89,13 +90,13 @@ impl Viewing {
 
     /// Ends it.
     pub(crate) async fn leave(self) {
-        self.stop.send_replace(true);
+        self.stop.send_replace(Stop::Now);
         drop(self.keeper.await);
     }
 }
 
 /// Keeps it alive at the same address.
-async fn keep(start: Start, mut child: Child, address: String, mut stopped: watch::Receiver<bool>) {
+async fn keep(start: Start, mut child: Child, address: String, mut stopped: watch::Receiver<Stop>) {
     for _start in 0..RESTARTS {
         let pipe = child.stdin.take();
         if child::ended(&mut child, &mut stopped).await.is_none() {

@@ -3,10 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use socrates_app::cluster::{self, SubmitOptions};
+use socrates_app::cluster_work::{self, WorkOptions};
+use socrates_app::collect::{self, CollectOptions};
 use socrates_app::config::Config;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
 
+use super::run::Options;
 use super::{Outcome, done};
 
 /// Arguments of `cluster`.
@@ -22,32 +26,92 @@ pub(crate) struct Cluster {
 enum ClusterVerb {
     /// Start the orchestrator and listen for workers.
     Up(Up),
-    /// Serve stages on this machine.
+    /// Serve all stages on this machine, with a process for each and one for each slot of the simulation.
+    Work(Work),
+    /// Serve one stage with one process.
     Worker(Worker),
     /// Hand requests to a running orchestrator and return.
-    Submit {
-        /// Request files, or folders of them.
-        #[arg(required = true)]
-        requests: Vec<PathBuf>,
-        /// Endpoint of the orchestrator.
-        #[arg(long)]
-        connect: String,
-        /// Namespace.
-        #[arg(long, default_value = "main")]
-        namespace: String,
-        /// Base seed.
-        #[arg(long, default_value_t = 1)]
-        seed: u64,
-    },
+    Submit(Submit),
+    /// Write the bundles of a batch that are done, with page and tables; also while others are being made, and again.
+    Collect(Collect),
+}
+
+/// Where an orchestrator is, for those who ask it.
+#[derive(Debug, Clone, Args)]
+struct At {
+    /// Endpoint of the orchestrator.
+    #[arg(long)]
+    connect: String,
+    /// Namespace.
+    #[arg(long, default_value = "main")]
+    namespace: String,
+}
+
+/// Arguments of `cluster work`.
+#[derive(Debug, Args)]
+struct Work {
+    #[command(flatten)]
+    at: At,
+    /// Folder for reports that are not yet recorded; `socrates-work-HOST` in the current folder if it is left out.
+    #[arg(long)]
+    dir: Option<PathBuf>,
+    /// Processes of the simulation stage; one per core if it is left out.
+    #[arg(long, value_name = "N")]
+    slots: Option<u32>,
+    /// Stages to serve, separated by commas; all if it is left out.
+    #[arg(long, value_delimiter = ',')]
+    stages: Vec<String>,
+}
+
+/// Arguments of `cluster submit`.
+#[derive(Debug, Args)]
+struct Submit {
+    /// Request files, or folders of them.
+    #[arg(required = true)]
+    requests: Vec<PathBuf>,
+    #[command(flatten)]
+    at: At,
+    /// Name of the batch; without one it is called after what it is made from.
+    #[arg(long)]
+    batch: Option<String>,
+    /// Options of `run`; those that are for this machine are refused.
+    #[command(flatten)]
+    options: Options,
+}
+
+/// Arguments of `cluster collect`.
+#[derive(Debug, Args)]
+struct Collect {
+    #[command(flatten)]
+    at: At,
+    /// Name of the batch; needed where there are several.
+    #[arg(long)]
+    batch: Option<String>,
+    /// Folder of the library.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
 }
 
 impl Cluster {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
         match &self.verb {
             ClusterVerb::Up(verb) => verb.act(talk, config).await,
+            ClusterVerb::Work(Work { at, dir, slots, stages }) => {
+                let At { connect, namespace } = at.clone();
+                let (dir, stages) = (dir.clone(), stages.clone());
+                let options = WorkOptions { connect, namespace, dir, slots: *slots, stages };
+                cluster_work::work(talk, config, &options).await
+            }
             ClusterVerb::Worker(verb) => verb.act(config).await,
-            ClusterVerb::Submit { requests, connect, namespace, seed } => {
-                done(socrates_app::cluster::submit(talk, config, requests, connect, namespace, *seed).await)
+            ClusterVerb::Submit(Submit { requests, at, batch, options }) => {
+                let At { connect, namespace } = at.clone();
+                let to = SubmitOptions { connect, namespace, batch: batch.clone() };
+                cluster::submit(talk, config, requests, &to, &options.values()).await
+            }
+            ClusterVerb::Collect(Collect { at, batch, out }) => {
+                let At { connect, namespace } = at.clone();
+                let wanted = CollectOptions { connect, namespace, batch: batch.clone(), out: out.clone() };
+                collect::collect(talk, config, &wanted).await
             }
         }
     }
@@ -73,6 +137,9 @@ pub(crate) struct Worker {
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(super) tied: bool,
+    /// Reports outlive a power cut, also those of a worker that leaves with its supervisor.
+    #[arg(long, hide = true)]
+    durable: bool,
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     #[arg(long, default_value = "")]
     inject: String,
@@ -80,8 +147,8 @@ pub(crate) struct Worker {
 
 impl Worker {
     pub(super) async fn act(&self, config: &Config) -> Outcome {
-        let Self { stage, connect, namespace, blobs, spool, tied, inject } = self.clone();
-        let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, inject };
+        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject } = self.clone();
+        let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, durable, inject };
         done(process::worker(config, &options).await)
     }
 }

@@ -1,9 +1,10 @@
-//! `library` and `labels`: what is taken out of many bundles.
+//! `library` and `labels`: many bundles together.
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use socrates_app::labels::{Blind, CompareOptions, PageOptions};
+use socrates_app::merge::{self, MergeOptions};
 use socrates_app::output::Printer;
 use socrates_app::{export_chat, labels};
 
@@ -20,6 +21,18 @@ pub(crate) struct Library {
 /// What is done with a library.
 #[derive(Debug, Subcommand)]
 enum LibraryVerb {
+    /// Put the shards of a batch together: the library that one run would have made.
+    Merge {
+        /// Folders of `run --shard`, or folders that hold such folders.
+        #[arg(required = true)]
+        shards: Vec<PathBuf>,
+        /// Folder of the library.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Move the bundles out of the shards instead of copying them.
+        #[arg(long = "move")]
+        moves: bool,
+    },
     /// Write what authors were asked and answered as training data.
     Export {
         /// Bundle folders, or folders that hold bundles.
@@ -34,6 +47,9 @@ enum LibraryVerb {
 impl Library {
     pub(super) fn act(&self, talk: &Printer) -> Outcome {
         match &self.verb {
+            LibraryVerb::Merge { shards, out, moves } => {
+                merge::merge(talk, &MergeOptions { shards: shards.clone(), out: out.clone(), moves: *moves })
+            }
             LibraryVerb::Export { what, chat_jsonl } => done(export_chat::export(talk, what, chat_jsonl)),
         }
     }

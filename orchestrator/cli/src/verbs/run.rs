@@ -7,6 +7,7 @@ use socrates_app::config::Config;
 use socrates_app::output::Printer;
 use socrates_app::run;
 use socrates_app::run_options::{self, RunOptions};
+use socrates_app::shard::Shard;
 use socrates_model::request::MAX_VARIANTS;
 use socrates_model::{AuthorSpec, PlannerName, Seeds};
 
@@ -27,6 +28,10 @@ pub(crate) struct Run {
     /// Request files, or folders of them.
     #[arg(required = true)]
     requests: Vec<PathBuf>,
+    /// Make one share of the scenarios, `0/200` to `199/200`, by itself: what they become does not depend on the number of shards.
+    /// `socrates library merge` puts the folders together.
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
     /// Options.
     #[command(flatten)]
     options: Options,
@@ -34,7 +39,8 @@ pub(crate) struct Run {
 
 impl Run {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        run::run(talk, config, &self.requests, &self.options.values()).await
+        let options = RunOptions { shard: self.shard, ..self.options.values() };
+        run::run(talk, config, &self.requests, &options).await
     }
 }
 
@@ -107,6 +113,7 @@ impl Options {
             planner: own.planner,
             variants: own.variants,
             repeats: own.repeats,
+            shard: None,
             author: own.author,
             pace,
             require,

@@ -1,0 +1,64 @@
+//! Bundles as files: whether each is as it was written, and a copy that is there whole or not at all.
+
+use std::path::Path;
+
+use socrates_model::Digest;
+
+use super::beside::Beside;
+use super::read::finished;
+use crate::exit::Complaint;
+
+/// Folders within a bundle, at most.
+const DEPTH: usize = 8;
+/// Damaged files that are named.
+const NAMED: usize = 3;
+
+/// Files of a finished bundle that are gone or not as they were written, in order of their names.
+fn damaged(dir: &Path) -> Result<Vec<String>, Complaint> {
+    let manifest = finished(dir)?;
+    let same = |(name, digest): &(&String, &Digest)| {
+        std::fs::read(dir.join(name)).is_ok_and(|bytes| Digest::of(&bytes) == **digest)
+    };
+    Ok(manifest.files.iter().filter(|file| !same(file)).map(|(name, _)| name.clone()).collect())
+}
+
+/// Says which files of a bundle are damaged, if any are.
+pub(crate) fn whole(dir: &Path) -> Result<(), Complaint> {
+    let damaged = damaged(dir)?;
+    if damaged.is_empty() {
+        return Ok(());
+    }
+    let named: Vec<String> = damaged.iter().take(NAMED).map(|name| format!("`{name}`")).collect();
+    let more = if damaged.len() > NAMED { format!(" and {} more", damaged.len() - NAMED) } else { String::new() };
+    Err(Complaint::input(
+        format!("the bundle `{}` is damaged: {}{more} not as written", dir.display(), named.join(", ")),
+        "remove the folder and run the command that made it again",
+    ))
+}
+
+/// Copies a bundle, checked on both sides. `work`: the work folder of the library, on the same file system as `to`.
+pub(crate) fn copy(from: &Path, to: &Path, work: &Path) -> Result<(), Complaint> {
+    let name = to.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    whole(from)?;
+    let beside = Beside::new(work, &name)?;
+    tree(from, &beside.0, DEPTH).map_err(|why| {
+        Complaint::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
+    })?;
+    whole(&beside.0)?;
+    beside.appear(to)
+}
+
+/// Copies files and folders; what is neither is left out.
+fn tree(from: &Path, to: &Path, depth: usize) -> std::io::Result<()> {
+    std::fs::create_dir_all(to)?;
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        let kind = entry.file_type()?;
+        if kind.is_file() {
+            std::fs::copy(entry.path(), to.join(entry.file_name()))?;
+        } else if let (true, Some(left)) = (kind.is_dir(), depth.checked_sub(1)) {
+            tree(&entry.path(), &to.join(entry.file_name()), left)?;
+        }
+    }
+    Ok(())
+}
