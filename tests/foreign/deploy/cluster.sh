@@ -3,6 +3,7 @@
 # to end, and another one goes on with its store. In FOLDER, which is made; the program is $SOCRATES. Says on its last line what it saw.
 #
 #   cluster.sh FOLDER
+# shellcheck disable=SC2016 # what is waited for is evaluated later
 set -euo pipefail
 
 slurm=$(cd "$(dirname "$0")/../../../deploy/slurm" && pwd)
@@ -12,8 +13,11 @@ small=(--cpus-per-task=1 --mem=100 --time=5)
 
 patience() { for _ in $(seq 600); do ! eval "$1" || return 0; sleep 0.1; done; echo "in vain: $1" >&2; squeue >&2; tail -n 20 ./*.log >&2; return 1; }
 up() { [ -s "$1/endpoint" ] && [ "$(grep -cs '^worker on [a-z]* of' "socrates-$2.log")" = "$3" ]; }
-# Right after a job has begun `scancel` waits and tries again; whether it has come is what the orchestrator says.
-leave() { patience "timeout 3 scancel --batch --signal=TERM $1 2>/dev/null; ! squeue --noheader --jobs $1 2>/dev/null | grep -q ."; }
+# Right after a job has begun `scancel` waits and tries again; that it has come is seen by what the job does.
+leave() {
+  patience "timeout 3 scancel --batch --signal=TERM $1 2>/dev/null; [ ! -e '$folder/endpoint' ]"
+  patience "! squeue --noheader --jobs $1 2>/dev/null | grep -q ."
+}
 state() { scontrol show job "$1" | sed -n 's/.*JobState=\([A-Z]*\).*/\1/p'; }
 
 job=$(sbatch --parsable "${small[@]}" "$slurm/cluster.sbatch")

@@ -4,8 +4,10 @@
 # is $SOCRATES. Says on its last line what it saw.
 #
 #   shards.sh FOLDER WORDS…
+# shellcheck disable=SC2016 # what is waited for is evaluated later
 set -euo pipefail
 
+told='' lost='' killed=''
 slurm=$(cd "$(dirname "$0")/../../../deploy/slurm" && pwd)
 mkdir -p "$1"
 cd "$1"
@@ -31,8 +33,13 @@ hasten() {
   done
 }
 # Right after a job has begun `scancel` waits and tries again, also where its signal has come; whether it has is what the log says.
-cancel() { patience "timeout 3 scancel $* 2>/dev/null; grep -qs CANCELLED 'socrates-${*: -1}.log'"; }
+cancel() { patience "timeout 3 scancel $* 2>/dev/null; grep -qs 'CANCEL.* AT' 'socrates-${*: -1}.log'"; }
 ended() { hasten; [ -z "$(squeue --noheader --array --jobs "$1" 2>/dev/null)" ]; }
+
+# A misspelt option of the file is refused.
+sed 's/--requeue/--reqeue/' "$slurm/shards.sbatch" >misspelt.sbatch
+misspelt=refused
+! sbatch --parsable "${small[@]}" misspelt.sbatch "$@" 2>misspelt.err || misspelt=taken
 
 job=$(sbatch --parsable "${small[@]}" "$slurm/shards.sbatch" "$@")
 early=$(sbatch --parsable "${small[@]}" --dependency="afterany:$job" "$slurm/merge.sbatch" "socrates-$job" early)
@@ -55,6 +62,6 @@ patience 'ended "$other"'
 
 state() { scontrol show job "$1" | sed -n 's/.*JobState=\([A-Z]*\).*Restarts.*/\1/p; s/.*JobState=\([A-Z]*\).*/\1/p' | head -n 1; }
 restarts() { scontrol show job "$1" | sed -n 's/.*Restarts=\([0-9]*\).*/\1/p' | head -n 1; }
-printf '{"told":%s,"told_again":%s,"lost":%s,"lost_again":%s,"killed":%s,"early":"%s","merge":"%s","canceled":"%s","canceled_again":%s,"job":%s}\n' \
-  "$told" "$(restarts "${job}_$told")" "$lost" "$(restarts "${job}_$lost")" "$killed" "$(state "$early")" "$(state "$merge")" \
-  "$(state "${other}_0")" "$(restarts "${other}_0")" "$job"
+printf '{"misspelt":"%s","told":%s,"told_again":%s,"lost":%s,"lost_again":%s,"killed":%s,"early":"%s","merge":"%s","canceled":%s,"canceled_again":%s,"job":%s}\n' \
+  "$misspelt" "$told" "$(restarts "${job}_$told")" "$lost" "$(restarts "${job}_$lost")" "$killed" "$(state "$early")" "$(state "$merge")" \
+  "$([[ $(state "${other}_0") = CANCEL* ]] && echo true || echo false)" "$(restarts "${other}_0")" "$job"

@@ -50,15 +50,15 @@ PartitionName=all Nodes=first,second Default=YES MaxTime=10 State=UP
 END
 cat >"$folder/bin/kill_node" <<END
 #!/usr/bin/env bash
-# The machine is what its processes say in their environment, and its daemon.
-kill -9 "\$(cat "$folder/slurmd-\$1.pid")"
+# What belongs to the machine: its daemon and what has that one's log open, and what its jobs started.
 for place in /proc/[0-9]*; do
-  if tr '\\0' '\\n' 2>/dev/null <"\$place/environ" | grep -qx "SLURMD_NODENAME=\$1" &&
-    tr '\\0' '\\n' 2>/dev/null <"\$place/environ" | grep -qx "SLURM_CONF=$folder/slurm.conf"; then
+  if find "\$place/fd" -lname "$folder/slurmd-\$1.log" 2>/dev/null | grep -q . ||
+    { tr '\\0' '\\n' <"\$place/environ" | grep -qx "SLURMD_NODENAME=\$1" &&
+      tr '\\0' '\\n' <"\$place/environ" | grep -qx "SLURM_CONF=$folder/slurm.conf"; } 2>/dev/null; then
     kill -9 "\${place#/proc/}" 2>/dev/null || true
   fi
 done
-scontrol update NodeName="\$1" State=DOWN Reason=killed
+[ "\${2:-}" = quietly ] || scontrol update NodeName="\$1" State=DOWN Reason=killed
 END
 chmod +x "$folder/bin/kill_node"
 export SLURM_CONF=$folder/slurm.conf PATH=$folder/bin:/usr/sbin:$PATH TMPDIR=$folder/tmp
@@ -66,11 +66,13 @@ export SLURM_CONF=$folder/slurm.conf PATH=$folder/bin:/usr/sbin:$PATH TMPDIR=$fo
 head -c 128 /dev/urandom >"$folder/munge.key"
 chmod 600 "$folder/munge.key"
 started=()
+# shellcheck disable=SC2329 # the trap calls it
 leave() {
   scancel --user=root 2>/dev/null || true
   for _ in $(seq 100); do [ -n "$(squeue --noheader 2>/dev/null)" ] || break; sleep 0.1; done
   for one in "${started[@]}"; do kill "$one" 2>/dev/null || true; done
   wait
+  for node in first second; do kill_node "$node" quietly; done
 }
 trap leave EXIT
 munged --foreground --socket="$folder/munge.socket" --key-file="$folder/munge.key" --pid-file="$folder/munged.pid" \
