@@ -55,7 +55,7 @@ for target in "${targets[@]}"; do
   root=$stage/$name
   mkdir -p "$root/requests"
   install -m 755 "$built" "$root/socrates"
-  strip_tool=strip
+  strip_tool='strip'
   if [ "$target" != "$host" ] && command -v "${target%%-*}-linux-gnu-strip" >/dev/null 2>&1; then
     strip_tool=${target%%-*}-linux-gnu-strip
   fi
