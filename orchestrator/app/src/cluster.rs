@@ -5,13 +5,14 @@ use std::time::Duration;
 
 use serde_json::json;
 use socrates_kit::LocalBlobs;
-use socrates_link::{Mode, ZenohConfig};
+use socrates_link::rules::Role;
 
 use crate::calls;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::prepare::{prepare, request_files};
+use crate::process::client;
 use crate::run_options::RunOptions;
 use crate::variants;
 use crate::wanted::{specs, wanted};
@@ -29,12 +30,7 @@ pub async fn submit(
     let options = RunOptions::plain(seed);
     let files = request_files(requests)?;
     let prepared = files.iter().map(|file| prepare(file, Some(&options), config)).collect::<Result<Vec<_>, _>>()?;
-    let bus = socrates_link::join(ZenohConfig::new(Mode::Client, namespace, "submit").connect(connect)).await.map_err(
-        |why| {
-            Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?")
-                .with_code(Code::Input)
-        },
-    )?;
+    let bus = client(config, Role::Client, connect, namespace, "submit").await?;
     let folder = config.program().temp.join(format!("socrates-submit-{}", std::process::id()));
     let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
     let blobs = LocalBlobs::new(&folder, false);

@@ -7,6 +7,7 @@ use socrates_app::config::Config;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
 
+use super::keys::{Keys, MakeKeys};
 use super::{Outcome, done};
 
 /// Arguments of `cluster`.
@@ -38,7 +39,11 @@ enum ClusterVerb {
         /// Base seed.
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        #[command(flatten)]
+        keys: Keys,
     },
+    /// Make the keys with which machines know each other, and what each may do.
+    Keys(MakeKeys),
 }
 
 impl Cluster {
@@ -46,7 +51,9 @@ impl Cluster {
         match &self.verb {
             ClusterVerb::Up(verb) => verb.act(talk, config).await,
             ClusterVerb::Worker(verb) => verb.act(config).await,
-            ClusterVerb::Submit { requests, connect, namespace, seed } => {
+            ClusterVerb::Keys(verb) => verb.act(talk),
+            ClusterVerb::Submit { requests, connect, namespace, seed, keys } => {
+                let config = &keys.over(config)?;
                 done(socrates_app::cluster::submit(talk, config, requests, connect, namespace, *seed).await)
             }
         }
@@ -76,11 +83,14 @@ pub(crate) struct Worker {
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     #[arg(long, default_value = "")]
     inject: String,
+    #[command(flatten)]
+    keys: Keys,
 }
 
 impl Worker {
     pub(super) async fn act(&self, config: &Config) -> Outcome {
-        let Self { stage, connect, namespace, blobs, spool, tied, inject } = self.clone();
+        let Self { stage, connect, namespace, blobs, spool, tied, inject, keys } = self.clone();
+        let config = &keys.over(config)?;
         let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, inject };
         done(process::worker(config, &options).await)
     }
@@ -101,8 +111,8 @@ pub(crate) struct Up {
     /// Folder of the job store and the artifacts; on a local disk.
     #[arg(long)]
     dir: PathBuf,
-    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach, such as `tcp/0.0.0.0:7447`,
-    /// needs `--insecure`.
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach has TLS and needs `--keys`, such as
+    /// `tls/0.0.0.0:7447`, or needs `--insecure`.
     #[arg(long)]
     listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
@@ -124,11 +134,14 @@ pub(crate) struct Up {
     /// No worker of before is alive: what they held is handed out again at once.
     #[arg(long, hide = true)]
     alone: bool,
+    #[command(flatten)]
+    keys: Keys,
 }
 
 impl Up {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let Self { dir, listen, insecure, connect, namespace, durable, tied, alone } = self.clone();
+        let Self { dir, listen, insecure, connect, namespace, durable, tied, alone, keys } = self.clone();
+        let config = &keys.over(config)?;
         let durable = match durable {
             Durable::Disk => Durability::Disk,
             Durable::Process => Durability::Process,
