@@ -124,8 +124,25 @@ def find(place=None, namespace=None):
     return place, namespace
 
 
-def connect(endpoint):
-    """A session with the run's router, which nobody else is looked for beside."""
+def _secured(endpoint, keys):
+    """Settings for an endpoint with TLS: the folder of the role `driver`, as `socrates cluster keys` made it."""
+    if not endpoint.startswith("tls/"):
+        return ()
+    keys = keys or os.environ.get("SOCRATES_BUS__KEYS")
+    if not keys:
+        raise ValueError(f"{endpoint} needs keys: name the folder of the role driver, as `keys` or by SOCRATES_BUS__KEYS")
+    files = (("root_ca_certificate", "ca.pem"), ("connect_certificate", "cert.pem"), ("connect_private_key", "key.pem"))
+    paths = [(name, os.path.abspath(os.path.join(keys, file))) for name, file in files]
+    for _, path in paths:
+        if not os.path.isfile(path):
+            raise ValueError(f"there is no file {path!r}; copy the folder of the role driver whole")
+    settings = [(name, json.dumps(path)) for name, path in paths] + [("enable_mtls", "true")]
+    return tuple((f"transport/link/tls/{name}", value) for name, value in settings)
+
+
+def connect(endpoint, keys=None):
+    """A session with the run's router, which nobody else is looked for beside. An endpoint that begins with `tls/` needs `keys`, the
+    folder of the role driver, or the variable SOCRATES_BUS__KEYS that names it."""
     config = zenoh.Config()
     for key, value in (
         ("mode", '"client"'),
@@ -133,6 +150,7 @@ def connect(endpoint):
         ("scouting/multicast/enabled", "false"),
         ("scouting/gossip/enabled", "false"),
         ("transport/shared_memory/enabled", "false"),
+        *_secured(endpoint, keys),
     ):
         config.insert_json5(key, value)
     session = zenoh.open(config)

@@ -5,7 +5,7 @@ use socrates_model::fault::{FailureClass, Fault, FaultCode};
 use socrates_model::job::{Item, Stage};
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::{
-    Acquired, BeatVerdict, Control, Grant, NoWork, Outcome, Recorded, Report, StatusAsk, Submitted,
+    Acquired, BeatVerdict, Control, Grant, NoWork, Outcome, Recorded, Release, Report, StatusAsk, Submitted,
 };
 
 use crate::world::{World, fault, report, spec, success};
@@ -142,6 +142,19 @@ fn a_wrong_fence_changes_nothing() {
     let forged = Report { fence: grant.fence + 1, ..success(&grant) };
     assert_eq!(world.send_report(forged), Recorded::Late);
     assert_eq!(world.state_of(&grant), JobState::Leased);
+}
+
+#[test]
+fn a_worker_cannot_report_or_hand_back_what_another_was_granted() {
+    let mut world = begun();
+    let grant = world.grant("w", Stage::Proposal);
+    let forged = Report { instance: "thief".to_owned(), ..success(&grant) };
+    assert_eq!(world.send_as_it_is(forged), Recorded::Late);
+    let key = grant.spec.key.clone();
+    let release = Release { instance: "thief".to_owned(), key, attempt: grant.attempt, fence: grant.fence };
+    assert_eq!(world.send_release(release), Recorded::Late);
+    assert_eq!(world.state_of(&grant), JobState::Leased);
+    assert_eq!(world.succeed(&grant), Recorded::Accepted);
 }
 
 #[test]

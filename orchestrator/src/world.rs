@@ -135,19 +135,34 @@ impl World {
     }
 
     pub(crate) fn release(&mut self, grant: &Grant) -> Recorded {
-        let release = Release {
-            instance: "w".to_owned(),
+        self.send_release(Release {
+            instance: self.holder(&grant.spec.key, grant.attempt),
             key: grant.spec.key.clone(),
             attempt: grant.attempt,
             fence: grant.fence,
-        };
+        })
+    }
+
+    pub(crate) fn send_release(&mut self, release: Release) -> Recorded {
         match self.send(|to| Event::Release { release, to }) {
             Some(Answer::Recorded(recorded)) => recorded,
             other => panic!("{other:?}"),
         }
     }
 
+    /// The worker that an attempt was granted to.
+    fn holder(&self, key: &JobKey, attempt: u32) -> String {
+        let found = self.state.jobs.get(key).and_then(|job| job.attempts.iter().find(|one| one.number == attempt));
+        found.map_or_else(|| "w".to_owned(), |attempt| attempt.instance.clone())
+    }
+
+    /// Sends it as the worker that holds the attempt does.
     pub(crate) fn send_report(&mut self, report: Report) -> Recorded {
+        let instance = self.holder(&report.key, report.attempt);
+        self.send_as_it_is(Report { instance, ..report })
+    }
+
+    pub(crate) fn send_as_it_is(&mut self, report: Report) -> Recorded {
         match self.send(|to| Event::Report { report: Box::new(report), to }) {
             Some(Answer::Recorded(recorded)) => recorded,
             other => panic!("{other:?}"),

@@ -85,6 +85,14 @@ pub enum LinkError {
         /// The feature of the build that is missing.
         feature: &'static str,
     },
+    /// Keys cannot be used, or none are given where some are needed.
+    #[error("{what}; {hint}")]
+    Keys {
+        /// What is wrong, with the file or the endpoint.
+        what: String,
+        /// What helps.
+        hint: String,
+    },
     /// The bus is closed.
     #[error("the bus is closed")]
     Closed,
@@ -117,6 +125,7 @@ impl LinkError {
             | Self::Encode { .. }
             | Self::Incompatible { .. }
             | Self::Absent { .. }
+            | Self::Keys { .. }
             | Self::Refused { .. } => FailureClass::Permanent,
             Self::Decode { .. } => FailureClass::Poison,
         }

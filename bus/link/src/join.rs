@@ -4,7 +4,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::bus::Bus;
+use crate::credentials::Credentials;
 use crate::error::LinkError;
+
+/// How an endpoint with mutual TLS begins: what it needs, and what shows who connects, are [`Credentials`].
+pub const TLS: &str = "tls/";
 
 /// The part a participant plays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +26,9 @@ pub enum Mode {
 pub struct ZenohConfig {
     /// Part played.
     pub mode: Mode,
-    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447` or `unixsock-stream//run/socrates.sock`; none by default.
+    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447`, `tls/0.0.0.0:7447` or `unixsock-stream//run/socrates.sock`; none by
+    /// default. One with TLS switches the access rules on ([`crate::rules`]): then a guest may do what its role may, and one
+    /// without a certificate, who came by another endpoint, nothing.
     pub listen: Vec<String>,
     /// Endpoints to connect to. There is no discovery: what is not listed is not found.
     pub connect: Vec<String>,
@@ -32,6 +38,8 @@ pub struct ZenohConfig {
     pub name: String,
     /// How long opening keeps trying to connect. Default 10 s. Once open, a lost connection is sought for ever.
     pub patience: Duration,
+    /// Keys for endpoints with TLS; other endpoints need none and use none. Default none.
+    pub credentials: Option<Credentials>,
 }
 
 impl ZenohConfig {
@@ -45,6 +53,7 @@ impl ZenohConfig {
             namespace: namespace.to_owned(),
             name: name.to_owned(),
             patience: Duration::from_secs(10),
+            credentials: None,
         }
     }
 
@@ -60,6 +69,46 @@ impl ZenohConfig {
     pub fn connect(mut self, endpoint: &str) -> Self {
         self.connect.push(endpoint.to_owned());
         self
+    }
+
+    /// With these keys.
+    #[must_use]
+    pub fn credentials(mut self, keys: Option<Credentials>) -> Self {
+        self.credentials = keys;
+        self
+    }
+
+    /// Whether the keys are there that the endpoints need, and are of a role that may use them so.
+    ///
+    /// # Errors
+    /// [`LinkError::Keys`] when they are not.
+    pub fn check(&self) -> Result<(), LinkError> {
+        let bad = |what: String, hint: &str| Err(LinkError::Keys { what, hint: hint.to_owned() });
+        let with_tls = |endpoints: &'_ [String]| endpoints.iter().find(|one| one.starts_with(TLS)).cloned();
+        let (listens, connects) = (with_tls(&self.listen), with_tls(&self.connect));
+        let Some(keys) = &self.credentials else {
+            return match listens.or(connects) {
+                Some(endpoint) => bad(
+                    format!("`{endpoint}` needs keys"),
+                    "--keys names the folder of a role, such as keys/worker; `socrates cluster keys` makes them",
+                ),
+                None => Ok(()),
+            };
+        };
+        let (role, folder) = (keys.role(), keys.folder().display());
+        if let Some(endpoint) = listens
+            && !role.listens()
+        {
+            let what = format!("nobody can listen on `{endpoint}` with the keys of the role `{role}` (`{folder}`)");
+            return bad(what, "an orchestrator listens with the folder `orchestrator`");
+        }
+        if let Some(endpoint) = connects
+            && !role.connects()
+        {
+            let what = format!("nobody can connect to `{endpoint}` with the keys of the role `{role}` (`{folder}`)");
+            return bad(what, "they are for a router; connect with the folder of your own role");
+        }
+        Ok(())
     }
 }
 

@@ -7,10 +7,11 @@
 //! ```
 //!
 //! Modules in reading order: errors, keys, the envelope and its one codec, the trait with the
-//! things it hands out, then the two buses, how to join the second, and the typed calls on top of either.
+//! things it hands out, then the two buses, how to join the second, and the typed calls on top of either; then
+//! who may do what on a router (`rules`), how they are known (`credentials`), and how those keys are made (`authority`).
 //! Without the feature `zenoh`, [`join()`] is an error that names it.
 //!
-//! *Never here:* a job's meaning, a retry (the caller owns its backoff), a file, a word of zenoh in
+//! *Never here:* a job's meaning, a retry (the caller owns its backoff), a file other than keys, a word of zenoh in
 //! a public signature, a callback that does more than hand a message to a bounded mailbox.
 
 mod error;
@@ -26,11 +27,20 @@ pub use bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Ser
 mod call;
 pub use call::{KIND_REFUSED, Refusal, call, call_envelope};
 
+#[cfg(feature = "zenoh")]
+mod authority;
+mod credentials;
+#[cfg(feature = "zenoh")]
+mod handshake;
 mod join;
 mod memory;
+pub mod rules;
 #[cfg(feature = "zenoh")]
 mod zenoh_bus;
-pub use join::{Mode, ZenohConfig, join};
+#[cfg(feature = "zenoh")]
+pub use authority::{KeysWish, RoleKeys, host_of, keys_of};
+pub use credentials::{Credentials, RoleFile};
+pub use join::{Mode, TLS, ZenohConfig, join};
 pub use memory::MemoryBus;
 #[cfg(feature = "zenoh")]
 pub use zenoh_bus::ZenohBus;

@@ -17,11 +17,16 @@ use zenoh::query::{ConsolidationMode, Query, QueryTarget};
 use zenoh::sample::{Sample, SampleKind};
 
 use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
+use socrates_model::job::MESSAGE_BYTES;
+
+use crate::credentials::{Credentials, RoleFile};
 use crate::envelope::fits;
 use crate::error::LinkError;
-use crate::join::{Mode, ZenohConfig};
+use crate::handshake;
+use crate::join::{Mode, TLS, ZenohConfig};
 use crate::keys::Namespace;
 use crate::mailbox::Mailbox;
+use crate::rules::{MOST_BYTES, access_control};
 
 /// Room of a served key and of a presence watch.
 const DEPTH: usize = 1024;
@@ -38,7 +43,7 @@ fn settings(of: &ZenohConfig) -> Result<Config, LinkError> {
         Mode::Client => "client",
     };
     // Debug of a string vector is a JSON5 list of strings.
-    let rows: [(&str, String); 17] = [
+    let mut rows = vec![
         ("mode", format!("{mode:?}")),
         ("listen/endpoints", format!("{:?}", of.listen)),
         ("listen/timeout_ms", "0".to_owned()),
@@ -53,16 +58,43 @@ fn settings(of: &ZenohConfig) -> Result<Config, LinkError> {
         ("transport/shared_memory/enabled", "false".to_owned()),
         ("transport/link/tx/lease", LEASE_MS.to_string()),
         ("transport/link/tx/keep_alive", "4".to_owned()),
+        ("transport/link/rx/max_message_size", MOST_BYTES.to_string()),
         ("transport/unicast/accept_timeout", "5000".to_owned()),
         ("transport/unicast/open_timeout", "5000".to_owned()),
         ("queries_default_timeout", "10000".to_owned()),
     ];
+    if let Some(keys) = &of.credentials {
+        rows.extend(secured(of, keys));
+    }
     let mut config = Config::default();
     for (key, value) in rows {
         let set = config.insert_json5(key, &value);
         set.map_err(|why| transport(&format!("setting `{key}` to `{value}`"), &why.to_string()))?;
     }
     Ok(config)
+}
+
+/// What is said about TLS: paths of files, never what is in them, because the library repeats its settings in errors.
+fn secured(of: &ZenohConfig, keys: &Credentials) -> Vec<(&'static str, String)> {
+    let path = |which: RoleFile| format!("{:?}", keys.file(which).display().to_string());
+    let with_tls = |endpoints: &[String]| endpoints.iter().any(|one| one.starts_with(TLS));
+    let (certificate, key) = (path(RoleFile::Certificate), path(RoleFile::Key));
+    let mut rows = vec![
+        ("transport/link/tls/root_ca_certificate", path(RoleFile::Authority)),
+        ("transport/link/tls/enable_mtls", "true".to_owned()),
+        ("transport/link/tls/verify_name_on_connect", "true".to_owned()),
+        ("transport/link/tls/close_link_on_expiration", "true".to_owned()),
+    ];
+    if with_tls(&of.listen) {
+        rows.push(("transport/link/tls/listen_certificate", certificate.clone()));
+        rows.push(("transport/link/tls/listen_private_key", key.clone()));
+        rows.push(("access_control", access_control()));
+    }
+    if with_tls(&of.connect) {
+        rows.push(("transport/link/tls/connect_certificate", certificate));
+        rows.push(("transport/link/tls/connect_private_key", key));
+    }
+    rows
 }
 
 fn transport(what: &str, why: &str) -> LinkError {
@@ -86,12 +118,20 @@ impl ZenohBus {
     /// Joins: listeners are bound and connections made before it returns.
     ///
     /// # Errors
-    /// [`LinkError::BadKey`] for the namespace; [`LinkError::Transport`] when an endpoint cannot be bound or reached.
+    /// [`LinkError::BadKey`] for the namespace; [`LinkError::Keys`] when keys are missing, of the wrong role, or refused by the other
+    /// end; [`LinkError::Transport`] when an endpoint cannot be bound or reached.
     pub async fn open(config: ZenohConfig) -> Result<Self, LinkError> {
         let namespace = Namespace::new(&config.namespace)?;
+        config.check()?;
         let joined = settings(&config)?;
-        let what = format!("joining the bus (listen {:?}, connect {:?})", config.listen, config.connect);
-        let session = zenoh::open(joined).await.map_err(|why| transport(&what, &why.to_string()))?;
+        let session = match zenoh::open(joined).await {
+            Ok(session) => session,
+            Err(why) => {
+                let what = format!("joining the bus (listen {:?}, connect {:?})", config.listen, config.connect);
+                let reason = handshake::refused(&config).await;
+                return Err(reason.unwrap_or_else(|| transport(&what, &why.to_string())));
+            }
+        };
         Ok(Self { session, namespace, name: config.name, endings: Arc::default() })
     }
 
@@ -190,6 +230,15 @@ impl Reply for Back {
     }
 }
 
+/// Whether a message that came is one that this bus sends; another is told in the log and dropped.
+fn within(key: &str, payload: &ZBytes) -> bool {
+    let (len, cap) = (payload.len(), MESSAGE_BYTES);
+    if len > cap {
+        tracing::warn!(key, len, cap, "a message that is too large was refused");
+    }
+    len <= cap
+}
+
 fn bytes(payload: &ZBytes) -> Vec<u8> {
     payload.to_bytes().into_owned()
 }
@@ -206,7 +255,7 @@ impl Bus for ZenohBus {
         let first = tokio::time::timeout(patience(timeout), replies.recv());
         match first.await {
             Ok(Some(reply)) => match reply.into_result() {
-                Ok(sample) => Ok(bytes(sample.payload())),
+                Ok(sample) => fits(key, bytes(sample.payload())),
                 Err(error) => match error.payload().try_to_string() {
                     Ok(text) if text.eq_ignore_ascii_case("timeout") => Err(late()),
                     Ok(text) => Err(unanswered(key, &text)),
@@ -232,7 +281,9 @@ impl Bus for ZenohBus {
                 && let Some(reply) = replies.recv().await
             {
                 // An error is somebody who did not answer in time.
-                if let Ok(sample) = reply.into_result() {
+                if let Ok(sample) = reply.into_result()
+                    && within(sample.key_expr().as_str(), sample.payload())
+                {
                     found.push(bytes(sample.payload()));
                 }
             }
@@ -253,6 +304,9 @@ impl Bus for ZenohBus {
             .complete(true)
             .callback(move |query: Query| {
                 let key = namespace.relative(query.key_expr().as_str()).to_owned();
+                if query.payload().is_some_and(|payload| !within(&key, payload)) {
+                    return;
+                }
                 let body = query.payload().map(bytes).unwrap_or_default();
                 inbox.push_blocking(Ask::new(key, body, Box::new(Back(query))));
             })
@@ -296,6 +350,9 @@ impl Bus for ZenohBus {
             .session
             .declare_subscriber(full)
             .callback(move |sample: Sample| {
+                if !within(sample.key_expr().as_str(), sample.payload()) {
+                    return;
+                }
                 let message = (namespace.relative(sample.key_expr().as_str()).to_owned(), bytes(sample.payload()));
                 match overflow {
                     Overflow::DropOldest => inbox.push_over(message),

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use serde_json::json;
 use socrates_kit::{Blobs, LocalBlobs};
+use socrates_link::rules::Role;
 use socrates_model::Digest;
 use socrates_model::wire::ScenarioSpec;
 
@@ -60,7 +61,7 @@ pub async fn submit(
     let names = distinct(prepared.iter().map(|one| one.name.as_str()));
     prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
     let (library, _) = wish(&prepared, options);
-    let bus = process::client(&to.connect, &to.namespace, "submit").await?;
+    let bus = process::client(config, Role::Client, &to.connect, &to.namespace, "submit").await?;
     let folder = tempfile::tempdir_in(&config.program().temp).map_err(|why| ours(why.to_string()))?;
     let blobs = LocalBlobs::new(folder.path(), false);
     let plans = variants::plans(talk, prepared.iter(), options.seed, options.repeats)?;

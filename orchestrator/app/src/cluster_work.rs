@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_kit::Stop;
+use socrates_link::rules::Role;
 use socrates_link::{Presence, keys};
 use socrates_model::job::Stage;
 use tokio::sync::mpsc;
@@ -54,7 +55,7 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
     // Two crews in one folder would report each other's work.
     let _hold = Hold::take(&dir)?;
     let mut signals = Signals::listen()?;
-    let bus = process::client(&options.connect, &options.namespace, "crew").await?;
+    let bus = process::client(config, Role::Worker, &options.connect, &options.namespace, "crew").await?;
     let mut orchestrators =
         bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| Complaint::resumes(why.to_string()))?;
     let (report, mut gave_up) = mpsc::channel(16);

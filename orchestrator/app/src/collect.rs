@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use socrates_kit::Blobs;
 use socrates_link::Bus;
+use socrates_link::rules::Role;
 use socrates_model::wire::PastEnd;
 use socrates_model::{Digest, Location, Report};
 use socrates_orchestrator::Snapshot;
@@ -56,7 +57,7 @@ pub struct CollectOptions {
 /// # Errors
 /// No orchestrator, no such batch or several, a folder that holds something else, or scenarios that were submitted without an order.
 pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) -> Result<Code, Complaint> {
-    let bus = process::client(&options.connect, &options.namespace, "collect").await?;
+    let bus = process::client(config, Role::Client, &options.connect, &options.namespace, "collect").await?;
     let ends = of_batch(calls::ends(bus.as_ref()).await?, options.batch.as_deref())?;
     let Some(first) = ends.first() else { return Err(empty(&options.connect)) };
     let known = Arc::new(Known { bus: Arc::clone(&bus), config: config.clone(), orders: Mutex::default() });

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
+use socrates_link::rules::Role;
 use socrates_model::driver::{EndMessage, MissionAnswer, MissionDoor, MissionMap, MissionMessage, MissionPerson};
 use socrates_model::lockstep::{self, HEAD_BYTES, PERSON_BYTES, StepHead, read_command, step_bytes};
 use socrates_model::robot::RobotFile;
@@ -56,7 +57,7 @@ pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> R
                     "start `socrates serve`, or let --driver start the driver here",
                 )
             })?;
-            (client(&endpoint, &namespace, "check").await?, None, None)
+            (client(config, Role::Worker, &endpoint, &namespace, "check").await?, None, None)
         }
         None => {
             let router = Router::open(folder.path(), config, "run").await?;

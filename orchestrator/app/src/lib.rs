@@ -51,6 +51,7 @@ pub mod golden;
 mod history;
 mod in_process;
 mod index;
+pub mod keys;
 pub mod labels;
 pub mod layout;
 mod library_index;

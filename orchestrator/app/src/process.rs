@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
-use socrates_link::{Bus, Mode, ZenohConfig};
+use socrates_link::rules::Role;
+use socrates_link::{Bus, Mode, TLS, ZenohConfig};
 use socrates_model::job::Stage;
 pub use socrates_store::Durability;
 use socrates_store::StoreError;
@@ -14,6 +15,7 @@ use tokio::sync::watch;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder;
+use crate::keys;
 use crate::orchestrate::{self, OrchestratorConfig};
 use crate::output::Printer;
 
@@ -43,8 +45,8 @@ pub struct WorkerOptions {
 pub struct OrchestratorOptions {
     /// Folder of the job store and the artifacts; on a local disk.
     pub dir: PathBuf,
-    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach, such as `tcp/0.0.0.0:7447`,
-    /// needs `--insecure`.
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach has TLS and needs keys, such as
+    /// `tls/0.0.0.0:7447`, or needs `--insecure`.
     pub listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
     /// returns any result. There is no password and no encryption.
@@ -75,7 +77,8 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
         Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
     })?;
     let shutdown = leave(options.tied);
-    let bus = joined(&options.connect, &options.namespace, &format!("worker-{stage}"), options.tied).await?;
+    let (connect, namespace) = (&options.connect, &options.namespace);
+    let bus = joined(config, Role::Worker, connect, namespace, &format!("worker-{stage}"), options.tied).await?;
     let blobs = options.blobs.as_ref().map_or(Blobs::Bus, |dir| Blobs::Local(LocalBlobs::new(dir, false)));
     let mut settings = WorkerConfig::new(blobs, &options.spool, CODE_VERSION);
     settings.faults = FaultPlan::parse(&options.inject)
@@ -86,19 +89,21 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
     settings.waits_for_disk = settings.durable;
     if stage == Stage::Simulation && config.text("stream.live") != "off" {
         // Control and stream never share a session, so that a frozen viewer stalls no job.
-        settings.live = Some(joined(&options.connect, &options.namespace, "stream", options.tied).await?);
+        settings.live = Some(joined(config, Role::Worker, connect, namespace, "stream", options.tied).await?);
     }
-    let keys = crate::authors::keys(config)?;
+    let author_keys = crate::authors::keys(config)?;
     let live = settings.live.clone();
     let served = match stage {
         Stage::Proposal => {
-            socrates_kit::serve(socrates_authoring::ProposalStage::new(keys), bus.clone(), settings, shutdown).await
+            socrates_kit::serve(socrates_authoring::ProposalStage::new(author_keys), bus.clone(), settings, shutdown)
+                .await
         }
         Stage::Paths => {
-            socrates_kit::serve(socrates_authoring::PathsStage::new(keys), bus.clone(), settings, shutdown).await
+            socrates_kit::serve(socrates_authoring::PathsStage::new(author_keys), bus.clone(), settings, shutdown).await
         }
         Stage::Behaviors => {
-            socrates_kit::serve(socrates_authoring::BehaviorsStage::new(keys), bus.clone(), settings, shutdown).await
+            socrates_kit::serve(socrates_authoring::BehaviorsStage::new(author_keys), bus.clone(), settings, shutdown)
+                .await
         }
         Stage::Simulation => {
             let stage = socrates_simulation::Simulation::new(ShmHost::new(shared_memory(config)));
@@ -129,14 +134,22 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
 }
 
 /// A client of a router. That the router of a supervisor is gone is nothing that a child is stuck with: it leaves.
-async fn joined(endpoint: &str, namespace: &str, name: &str, tied: bool) -> Result<Arc<dyn Bus>, Complaint> {
-    let joined = client(endpoint, namespace, name).await;
+async fn joined(
+    config: &Config,
+    role: Role,
+    endpoint: &str,
+    namespace: &str,
+    name: &str,
+    tied: bool,
+) -> Result<Arc<dyn Bus>, Complaint> {
+    let joined = client(config, role, endpoint, namespace, name).await;
     joined.map_err(|why| if tied { why.with_code(Code::Ours) } else { why })
 }
 
 /// Refuses to listen where other machines can reach it, unless that is meant.
 fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
-    if is_local(listen) {
+    // With TLS nobody comes in without keys.
+    if is_local(listen) || listen.starts_with(TLS) {
         return Ok(());
     }
     let open = format!(
@@ -149,7 +162,8 @@ fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
     }
     Err(Complaint::input(
         open,
-        "listen on tcp/127.0.0.1:7447 and let workers come through `ssh -L`, or say --insecure in a network that you trust",
+        "make keys with `socrates cluster keys` and listen on tls/0.0.0.0:7447 with --keys; or listen on tcp/127.0.0.1:7447 and let \
+         workers come through `ssh -L`, or say --insecure in a network that you trust",
     ))
 }
 
@@ -174,17 +188,18 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
     let bus: Arc<dyn Bus> = match (&options.listen, &options.connect) {
         (Some(listen), None) => {
             reachable(listen, options.insecure)?;
+            let keys = keys::of(config, Role::Orchestrator, listen)?;
             let settings = ZenohConfig::new(Mode::Router, &options.namespace, "orchestrator").listen(listen);
-            let opened = socrates_link::join(settings).await.map_err(|why| {
-                Complaint::input(
-                    format!("cannot listen on `{listen}`: {why}"),
-                    "another port, or end the program that has it",
-                )
+            let opened = socrates_link::join(settings.credentials(keys)).await.map_err(|why| {
+                let hint = "another port, or end the program that has it";
+                keys::told(why, &format!("cannot listen on `{listen}`"), hint)
             })?;
             talk.warn(&format!("listening  {listen} · namespace {}", options.namespace));
             opened
         }
-        (None, Some(connect)) => joined(connect, &options.namespace, "orchestrator", options.tied).await?,
+        (None, Some(connect)) => {
+            joined(config, Role::Orchestrator, connect, &options.namespace, "orchestrator", options.tied).await?
+        }
         (Some(_), Some(_)) | (None, None) => {
             return Err(Complaint::input(
                 "give either --listen or --connect",
@@ -225,15 +240,22 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
     })
 }
 
-/// A client of a router.
-pub(crate) async fn client(endpoint: &str, namespace: &str, name: &str) -> Result<Arc<dyn Bus>, Complaint> {
-    let bus = socrates_link::join(ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint)).await;
-    bus.map_err(|why| {
-        Complaint::input(
-            format!("cannot connect to `{endpoint}`: {why}"),
-            "is `socrates run` or `socrates cluster up` running there?",
-        )
-    })
+/// A client of a router, in this role: with TLS its keys have to be of it.
+pub(crate) async fn client(
+    config: &Config,
+    role: Role,
+    endpoint: &str,
+    namespace: &str,
+    name: &str,
+) -> Result<Arc<dyn Bus>, Complaint> {
+    if !config.text(keys::SETTING).is_empty() && !endpoint.starts_with(TLS) && !is_local(endpoint) {
+        let what = format!("`{endpoint}` goes to another machine in clear, although there are keys");
+        return Err(Complaint::input(what, "connect to an endpoint that begins with tls/, or without keys: --keys ''"));
+    }
+    let keys = keys::of(config, role, endpoint)?;
+    let settings = ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint).credentials(keys);
+    let hint = "is `socrates run` or `socrates cluster up` running there?";
+    socrates_link::join(settings).await.map_err(|why| keys::told(why, &format!("cannot connect to `{endpoint}`"), hint))
 }
 
 /// Turns SIGTERM, SIGINT and, for children of a supervisor, the end of standard input into a wish to leave.
@@ -279,6 +301,7 @@ mod tests {
 
     #[test]
     fn only_this_machine_is_listened_to_unless_more_is_meant() {
+        reachable("tls/0.0.0.0:7447", false).unwrap();
         let near =
             ["tcp/127.0.0.1:7447", "tcp/127.8.9.1:1", "tcp/[::1]:7447", "tcp/localhost:0", "unixsock-stream//run/x"];
         for endpoint in near {

@@ -10,10 +10,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use socrates_link::rules::Role;
 use socrates_model::wire::StatusReply;
 use socrates_model::{JobState, ScenarioEnd};
 use socrates_store::Reader;
 
+use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::files::shell;
 use crate::history::History;
@@ -171,10 +173,13 @@ impl Standing {
 }
 
 /// Shows how the jobs of a folder or endpoint stand.
-pub async fn status(talk: &Printer, what: &str, listed: Listed) -> Result<(), Complaint> {
+pub async fn status(talk: &Printer, config: &Config, what: &str, listed: Listed) -> Result<(), Complaint> {
     let folder = Path::new(what);
-    let standing =
-        if folder.exists() { of_folder(what, folder, listed).await? } else { of_endpoint(what, listed).await? };
+    let standing = if folder.exists() {
+        of_folder(config, what, folder, listed).await?
+    } else {
+        of_endpoint(config, what, listed).await?
+    };
     for line in standing.lines() {
         talk.line(&line);
     }
@@ -187,9 +192,9 @@ pub async fn status(talk: &Printer, what: &str, listed: Listed) -> Result<(), Co
 }
 
 /// What the orchestrator at an endpoint says.
-async fn of_endpoint(what: &str, listed: Listed) -> Result<Standing, Complaint> {
+async fn of_endpoint(config: &Config, what: &str, listed: Listed) -> Result<Standing, Complaint> {
     let (address, namespace) = endpoint(what).ok_or_else(|| nothing(what))?;
-    let bus = process::client(&address, &namespace, "watch").await?;
+    let bus = process::client(config, Role::Client, &address, &namespace, "watch").await?;
     let silent = |why: socrates_link::LinkError| {
         Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment")
             .with_code(Code::Ours)
@@ -215,12 +220,12 @@ async fn of_endpoint(what: &str, listed: Listed) -> Result<Standing, Complaint> 
 }
 
 /// What lies in a folder: a bundle, a library, something that is being made, or several of them.
-async fn of_folder(what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
+async fn of_folder(config: &Config, what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
     if let Some(rows) = made(folder) {
         return Ok(Standing::of_rows(what, Phase::Finished, rows));
     }
     if folder.join(place::WORK).is_dir() {
-        return being_made(what, folder, listed).await;
+        return being_made(config, what, folder, listed).await;
     }
     // A folder of bundles, perhaps with some that are not finished.
     let mut below: Vec<_> = std::fs::read_dir(folder)
@@ -235,7 +240,7 @@ async fn of_folder(what: &str, folder: &Path, listed: Listed) -> Result<Standing
         if let Some(found) = made(&dir) {
             rows.extend(found);
         } else if dir.join(place::WORK).is_dir() {
-            let found = being_made(what, &dir, listed).await?;
+            let found = being_made(config, what, &dir, listed).await?;
             let open = found.phase;
             phase = if phase == Phase::Finished || open == Phase::GoingOn { open } else { phase };
             rows.extend(from_store(&dir, true)?);
@@ -264,14 +269,14 @@ fn made(folder: &Path) -> Option<Vec<Row>> {
 }
 
 /// A folder with a job store: its rows, and what the orchestrator says where one works.
-async fn being_made(what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
+async fn being_made(config: &Config, what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
     let rows = from_store(folder, listed != Listed::None)?;
     let ended = place::ended(folder).is_some();
     let standing = Standing::of_rows(what, if ended { Phase::Finished } else { Phase::Stopped }, rows);
     let endpoint = endpoint(&folder.display().to_string()).filter(|_| !ended);
     let Some((address, namespace)) = endpoint else { return Ok(standing) };
     let answer = tokio::time::timeout(ANSWER, async {
-        let bus = process::client(&address, &namespace, "watch").await.ok()?;
+        let bus = process::client(config, Role::Client, &address, &namespace, "watch").await.ok()?;
         let reply = calls::status(bus.as_ref(), 0).await.ok();
         bus.close().await;
         reply

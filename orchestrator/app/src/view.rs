@@ -19,6 +19,7 @@ use socrates_gateway::http::Policy;
 use socrates_gateway::{Gateway, Tls};
 use tokio::net::TcpListener;
 
+use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::process::leave;
@@ -53,8 +54,9 @@ pub struct ViewOptions {
 }
 
 /// Shows it until it is told to leave.
-pub async fn view(talk: &Printer, options: &ViewOptions) -> Result<(), Complaint> {
+pub async fn view(talk: &Printer, config: &Config, options: &ViewOptions) -> Result<(), Complaint> {
     let place = Place::of(&options.what)?;
+    place.check(config)?;
     let listener = listen(options).await?;
     let address = listener.local_addr().map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
     let rules = rules(options, &address)?;
@@ -90,7 +92,7 @@ pub async fn view(talk: &Printer, options: &ViewOptions) -> Result<(), Complaint
     }
     let mut leaves = leave(options.tied);
     let gateway = Gateway { rules, policy, tls };
-    let folder = Folder::watch(place);
+    let folder = Folder::watch(place, config.clone());
     let served = gateway.serve(listener, vec![Box::new(Runs(Arc::clone(&folder)))]);
     tokio::select! {
         () = served => {}

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use socrates_link::rules::Role;
 use socrates_link::{Bus, Overflow, keys};
 use socrates_model::{AgentState, EventKind, JobState, RunId, SimTime};
 use socrates_stream::{Sight, TickRange, Watch};
 
 use crate::calls;
+use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::output::{Format, Printer};
 use crate::process::client;
@@ -23,22 +25,24 @@ const FETCH_TICKS: u64 = 200;
 const PATIENCE: Duration = Duration::from_secs(60);
 /// How long nothing may be heard of a run before watching ends: a run that goes on tells something a hundred times a second.
 const SILENCE: Duration = Duration::from_secs(10);
+/// Runs that are asked what they are, at most.
+const RUNS_ASKED: usize = 64;
 /// The same once the run itself has said that it ends.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
-async fn connect(what: &str) -> Result<Arc<dyn Bus>, Complaint> {
+async fn connect(config: &Config, what: &str) -> Result<Arc<dyn Bus>, Complaint> {
     let (endpoint, namespace) = endpoint(what).ok_or_else(|| {
         Complaint::input(
             format!("nothing is being made in `{what}`"),
             "name the folder of a run that is going on, or an endpoint such as tcp/127.0.0.1:7447@main",
         )
     })?;
-    client(&endpoint, &namespace, "watch").await
+    client(config, Role::Viewer, &endpoint, &namespace, "watch").await
 }
 
 /// Follows one run to its end: every tick, or an exact list of the missing, which are then fetched.
-pub async fn watch(talk: &Printer, what: &str, run: Option<&str>) -> Result<(), Complaint> {
-    let bus = connect(what).await?;
+pub async fn watch(talk: &Printer, config: &Config, what: &str, run: Option<&str>) -> Result<(), Complaint> {
+    let bus = connect(config, what).await?;
     let ours =
         |why: String| Complaint::input(why, "the run may be over; `socrates status` shows it").with_code(Code::Ours);
     let run = match run {
@@ -185,12 +189,24 @@ async fn announced(bus: &dyn Bus) -> Result<RunId, Complaint> {
 }
 
 async fn going_on(bus: &dyn Bus) -> Option<RunId> {
-    let reply = calls::status(bus, 0).await.ok()?;
+    // A viewer with keys may not ask the orchestrator, but every run.
+    let Ok(reply) = calls::status(bus, 0).await else { return told_of_itself(bus).await };
     let jobs = reply.scenarios.iter().flat_map(|scenario| &scenario.jobs);
     let mut leased =
         jobs.filter(|job| job.key.stage == socrates_model::job::Stage::Simulation && job.state == JobState::Leased);
     let key = &leased.next()?.key;
     Some(key.item.run()?.id(&key.scenario))
+}
+
+/// A run that says of itself that it goes on.
+async fn told_of_itself(bus: &dyn Bus) -> Option<RunId> {
+    let metas = bus.query_all(keys::RUNS, Vec::new(), RUNS_ASKED, Duration::from_secs(1)).await.ok()?;
+    metas.iter().find_map(|meta| {
+        let meta: Value = serde_json::from_slice(meta).ok()?;
+        let goes_on = meta.get("ended")?.is_null();
+        goes_on.then_some(())?;
+        RunId::new(meta.get("header")?.get("run")?.as_str()?).ok()
+    })
 }
 
 #[cfg(test)]

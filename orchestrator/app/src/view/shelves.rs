@@ -13,7 +13,8 @@ use socrates_gateway::hub::Shelf;
 use socrates_gateway::judge::standing;
 use socrates_gateway::run::{Run, Standing};
 use socrates_gateway::scene::Scene;
-use socrates_link::Bus;
+use socrates_link::rules::Role;
+use socrates_link::{Bus, Mode, ZenohConfig};
 use socrates_model::driver::map_cells;
 use socrates_model::{RunId, SimTime};
 use socrates_simulation::scene::live_scene;
@@ -21,7 +22,9 @@ use tokio::task::JoinHandle;
 
 use crate::batch;
 use crate::bundle::{self, Manifest};
+use crate::config::Config;
 use crate::exit::Complaint;
+use crate::keys;
 use crate::layout;
 use crate::process::client;
 use crate::supervise::endpoint;
@@ -70,6 +73,15 @@ impl Place {
         }
     }
 
+    /// Whether the keys that it needs are there.
+    pub(super) fn check(&self, config: &Config) -> Result<(), Complaint> {
+        let Self::Endpoint(what) = self else { return Ok(()) };
+        let Some((endpoint, namespace)) = endpoint(what) else { return Ok(()) };
+        let keys = keys::of(config, Role::Viewer, &endpoint)?;
+        let settings = ZenohConfig::new(Mode::Client, &namespace, "view").connect(&endpoint).credentials(keys);
+        settings.check().map_err(|why| keys::told(why, &format!("cannot view `{endpoint}`"), ""))
+    }
+
     fn folder(&self) -> Option<&Path> {
         match self {
             Self::Folder(folder) => Some(folder),
@@ -91,6 +103,7 @@ type Lines = Arc<Vec<(RunId, Value)>>;
 /// The runs of a place.
 pub(super) struct Folder {
     place: Place,
+    config: Config,
     /// Bundles whose manifest was read, and when that was written.
     known: Mutex<BTreeMap<PathBuf, (SystemTime, Lines)>>,
     joined: Mutex<Option<Joined>>,
@@ -99,9 +112,14 @@ pub(super) struct Folder {
 
 impl Folder {
     /// Looks at the place from now on: a bus that comes, goes, or is another one is joined.
-    pub(super) fn watch(place: Place) -> Arc<Self> {
-        let folder =
-            Arc::new(Self { place, known: Mutex::default(), joined: Mutex::default(), looking: Mutex::default() });
+    pub(super) fn watch(place: Place, config: Config) -> Arc<Self> {
+        let folder = Arc::new(Self {
+            place,
+            config,
+            known: Mutex::default(),
+            joined: Mutex::default(),
+            looking: Mutex::default(),
+        });
         let looks = Arc::downgrade(&folder);
         let looking = tokio::spawn(async move {
             let mut look = tokio::time::interval(LOOK);
@@ -120,7 +138,7 @@ impl Folder {
         let before = self.joined().as_ref().map(|joined| joined.at.clone());
         let Some(at) = now.filter(|at| before.as_ref() != Some(at)) else { return };
         let (endpoint, namespace) = &at;
-        let Ok(bus) = client(endpoint, namespace, "view").await else { return };
+        let Ok(bus) = client(&self.config, Role::Viewer, endpoint, namespace, "view").await else { return };
         match Air::listen(Arc::clone(&bus)).await {
             Ok(air) => {
                 let old = self.joined().replace(Joined { at, bus, air: Arc::new(air) });

@@ -10,6 +10,7 @@ use socrates_app::config::Config;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
 
+use super::keys::{Keys, MakeKeys};
 use super::run::Options;
 use super::{Outcome, done};
 
@@ -34,6 +35,8 @@ enum ClusterVerb {
     Submit(Submit),
     /// Write the bundles of a batch that are done, with page and tables; also while others are being made, and again.
     Collect(Collect),
+    /// Make the keys with which machines know each other, and what each may do.
+    Keys(MakeKeys),
 }
 
 /// Where an orchestrator is, for those who ask it.
@@ -45,6 +48,8 @@ struct At {
     /// Namespace.
     #[arg(long, default_value = "main")]
     namespace: String,
+    #[command(flatten)]
+    keys: Keys,
 }
 
 /// Arguments of `cluster work`.
@@ -97,19 +102,23 @@ impl Cluster {
         match &self.verb {
             ClusterVerb::Up(verb) => verb.act(talk, config).await,
             ClusterVerb::Work(Work { at, dir, slots, stages }) => {
-                let At { connect, namespace } = at.clone();
+                let At { connect, namespace, keys } = at.clone();
+                let config = &keys.over(config)?;
                 let (dir, stages) = (dir.clone(), stages.clone());
                 let options = WorkOptions { connect, namespace, dir, slots: *slots, stages };
                 cluster_work::work(talk, config, &options).await
             }
             ClusterVerb::Worker(verb) => verb.act(config).await,
+            ClusterVerb::Keys(verb) => verb.act(talk),
             ClusterVerb::Submit(Submit { requests, at, batch, options }) => {
-                let At { connect, namespace } = at.clone();
+                let At { connect, namespace, keys } = at.clone();
+                let config = &keys.over(config)?;
                 let to = SubmitOptions { connect, namespace, batch: batch.clone() };
                 cluster::submit(talk, config, requests, &to, &options.values()).await
             }
             ClusterVerb::Collect(Collect { at, batch, out }) => {
-                let At { connect, namespace } = at.clone();
+                let At { connect, namespace, keys } = at.clone();
+                let config = &keys.over(config)?;
                 let wanted = CollectOptions { connect, namespace, batch: batch.clone(), out: out.clone() };
                 collect::collect(talk, config, &wanted).await
             }
@@ -143,11 +152,14 @@ pub(crate) struct Worker {
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     #[arg(long, default_value = "")]
     inject: String,
+    #[command(flatten)]
+    keys: Keys,
 }
 
 impl Worker {
     pub(super) async fn act(&self, config: &Config) -> Outcome {
-        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject } = self.clone();
+        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject, keys } = self.clone();
+        let config = &keys.over(config)?;
         let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, durable, inject };
         done(process::worker(config, &options).await)
     }
@@ -168,8 +180,8 @@ pub(crate) struct Up {
     /// Folder of the job store and the artifacts; on a local disk.
     #[arg(long)]
     dir: PathBuf,
-    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach, such as `tcp/0.0.0.0:7447`,
-    /// needs `--insecure`.
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach has TLS and needs `--keys`, such as
+    /// `tls/0.0.0.0:7447`, or needs `--insecure`.
     #[arg(long)]
     listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
@@ -191,11 +203,14 @@ pub(crate) struct Up {
     /// No worker of before is alive: what they held is handed out again at once.
     #[arg(long, hide = true)]
     alone: bool,
+    #[command(flatten)]
+    keys: Keys,
 }
 
 impl Up {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let Self { dir, listen, insecure, connect, namespace, durable, tied, alone } = self.clone();
+        let Self { dir, listen, insecure, connect, namespace, durable, tied, alone, keys } = self.clone();
+        let config = &keys.over(config)?;
         let durable = match durable {
             Durable::Disk => Durability::Disk,
             Durable::Process => Durability::Process,

@@ -8,6 +8,7 @@ mod dev;
 mod drive;
 mod evaluate;
 mod explain;
+mod keys;
 mod library;
 mod look;
 mod map;
@@ -160,7 +161,7 @@ impl Verb {
             Self::New(verb) => verb.act(talk).await,
             Self::Read(verb) => verb.act(talk, config),
             Self::Run(verb) => verb.act(talk, config).await,
-            Self::View(verb) => verb.act(talk).await,
+            Self::View(verb) => verb.act(talk, config).await,
             Self::Compare(verb) => verb.act(talk, config).await,
             Self::Open(verb) => verb.act(talk),
             Self::Report(verb) => verb.act(talk),
@@ -173,8 +174,8 @@ impl Verb {
             Self::Score(verb) => verb.act(talk),
             Self::Serve(verb) => verb.act(talk, config).await,
             Self::Drive(verb) => verb.act(talk, config).await,
-            Self::Watch(verb) => verb.act(talk).await,
-            Self::Status(verb) => verb.act(talk).await,
+            Self::Watch(verb) => verb.act(talk, config).await,
+            Self::Status(verb) => verb.act(talk, config).await,
             Self::Explain(verb) => verb.act(talk),
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),

@@ -4,9 +4,11 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::Args;
+use socrates_app::config::Config;
 use socrates_app::output::Printer;
 use socrates_app::view::{self, ViewOptions};
 
+use super::keys::Keys;
 use super::{Outcome, done};
 
 /// Arguments of `view`.
@@ -46,10 +48,13 @@ pub(crate) struct View {
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(super) tied: bool,
+    #[command(flatten)]
+    keys: Keys,
 }
 
 impl View {
-    pub(super) async fn act(&self, talk: &Printer) -> Outcome {
+    pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
+        let config = &self.keys.over(config)?;
         let options = ViewOptions {
             what: self.what.clone(),
             listen: self.listen,
@@ -62,6 +67,6 @@ impl View {
             most: self.max_clients,
             tied: self.tied,
         };
-        done(view::view(talk, &options).await)
+        done(view::view(talk, config, &options).await)
     }
 }

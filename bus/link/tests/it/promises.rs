@@ -1,5 +1,4 @@
 //! What every bus promises; run on the one in memory and on zenoh through a router on loopback.
-#![expect(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests may fail the test")]
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,9 +9,9 @@ use socrates_model::wire::{StatusAsk, StatusReply};
 
 /// No wait of a test is longer; it is there to fail instead of hang.
 const WATCHDOG: Duration = Duration::from_secs(60);
-const SOON: Duration = Duration::from_secs(10);
+pub(crate) const SOON: Duration = Duration::from_secs(10);
 
-async fn guarded<T>(what: impl Future<Output = T>) -> T {
+pub(crate) async fn guarded<T>(what: impl Future<Output = T>) -> T {
     tokio::time::timeout(WATCHDOG, what).await.expect("a promise is kept within the watchdog's time")
 }
 
@@ -37,7 +36,7 @@ async fn end(pair: Pair) {
 }
 
 /// Asks until somebody serves the key: declarations travel for a moment.
-async fn ask_until_served(bus: &dyn Bus, key: &str, body: &[u8]) -> Vec<u8> {
+pub(crate) async fn ask_until_served(bus: &dyn Bus, key: &str, body: &[u8]) -> Vec<u8> {
     loop {
         match bus.query(key, body.to_vec(), SOON).await {
             Ok(reply) => return reply,
@@ -136,7 +135,7 @@ async fn a_publisher_knows_whether_anybody_listens(pair: &Pair) {
 }
 
 /// Looks again and again; declarations travel for a moment.
-async fn until(mut holds: impl FnMut() -> bool) {
+pub(crate) async fn until(mut holds: impl FnMut() -> bool) {
     while !holds() {
         tokio::time::sleep(Duration::from_millis(5)).await;
     }
@@ -267,14 +266,14 @@ async fn memory_keeps_every_promise() {
 
 /// The same over zenoh, and what only a bus between processes can break.
 #[cfg(feature = "zenoh")]
-mod over_zenoh {
+pub(crate) mod over_zenoh {
     use std::net::TcpListener;
 
     use socrates_link::{Mode, ZenohBus, ZenohConfig};
 
     use super::*;
 
-    fn free_port() -> u16 {
+    pub(crate) fn free_port() -> u16 {
         TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
     }
 
@@ -335,90 +334,6 @@ mod over_zenoh {
             server.abort();
             other.close().await;
             router.close().await;
-        })
-        .await;
-    }
-
-    /// A router with the shipped rules, for which processes come by a socket and viewers by TCP.
-    async fn ruled_router(socket: &str, tcp: &str) -> zenoh::Session {
-        let rules = include_str!("../../../deploy/zenoh/access.json5");
-        let rules = rules.replace(r#"usernames: ["orchestrator", "worker"]"#, r#"link_protocols: ["unixsock-stream"]"#);
-        let rules = rules.replace(r#"usernames: ["viewer"]"#, r#"link_protocols: ["tcp"]"#);
-        let mut config = zenoh::Config::from_json5(&rules).unwrap();
-        for (key, value) in [
-            ("mode", "\"router\"".to_owned()),
-            ("listen/endpoints", format!("[{socket:?}, {tcp:?}]")),
-            ("scouting/multicast/enabled", "false".to_owned()),
-            ("scouting/gossip/enabled", "false".to_owned()),
-        ] {
-            config.insert_json5(key, &value).unwrap();
-        }
-        zenoh::open(config).await.unwrap()
-    }
-
-    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-    async fn a_viewer_by_the_shipped_rules_reads_live_keys_and_nothing_else() {
-        guarded(async {
-            let folder = tempfile::tempdir().unwrap();
-            let socket = format!("unixsock-stream/{}", folder.path().join("bus").display());
-            let tcp = format!("tcp/127.0.0.1:{}", free_port());
-            let router = ruled_router(&socket, &tcp).await;
-            let open = |at: &str, name: &str| ZenohBus::open(ZenohConfig::new(Mode::Client, "t", name).connect(at));
-            let (run, other, viewer) = (
-                open(&socket, "run").await.unwrap(),
-                open(&socket, "other").await.unwrap(),
-                open(&tcp, "viewer").await.unwrap(),
-            );
-            let mut asked = run.serve("live/r1/*").await.unwrap();
-            let server = tokio::spawn(async move {
-                while let Some(ask) = asked.next().await {
-                    ask.reply(vec![1]).await.unwrap();
-                }
-            });
-            // What a viewer may: ask a run, and hear it.
-            assert_eq!(ask_until_served(&viewer, "live/r1/meta", &[]).await, [1]);
-            let mut hears = viewer.subscribe("live/**", 64, Overflow::DropOldest).await.unwrap();
-            let heard = async {
-                loop {
-                    run.publish("live/r1/latest", vec![2], Qos::Hint).await.unwrap();
-                    if let Ok(Some((key, _))) = tokio::time::timeout(Duration::from_millis(50), hears.next()).await {
-                        return key;
-                    }
-                }
-            };
-            assert_eq!(heard.await, "live/r1/latest");
-            // What it may not: tell, serve, be present, ask for work, hear anything else. A process that may is the measure.
-            let mut others = other.subscribe("**", 64, Overflow::DropOldest).await.unwrap();
-            let mut presence = other.watch_alive("**").await.unwrap();
-            let mut works = run.serve("rpc/acquire").await.unwrap();
-            let worker = tokio::spawn(async move { works.next().await.unwrap().reply(vec![3]).await });
-            assert!(viewer.query("rpc/acquire", vec![], SOON).await.is_err(), "work was handed to a viewer");
-            let mut nosy = viewer.subscribe("hint/**", 64, Overflow::DropOldest).await.unwrap();
-            drop(viewer.publish("live/r1/latest", vec![9], Qos::Control).await);
-            drop(viewer.publish("cmd/worker", vec![9], Qos::Control).await);
-            let _token = viewer.declare_alive("live/worker/simulation/fake").await;
-            let _serving = viewer.serve("rpc/hello").await;
-            assert!(other.query("rpc/hello", vec![], SOON).await.is_err(), "a viewer was asked");
-            loop {
-                run.publish("hint/simulation", vec![4], Qos::Control).await.unwrap();
-                match tokio::time::timeout(Duration::from_millis(50), others.next()).await {
-                    Ok(Some((key, body))) if key == "hint/simulation" => break assert_eq!(body, [4]),
-                    Ok(Some((key, body))) => assert_ne!(body, [9], "a viewer told `{key}`"),
-                    Ok(None) => panic!("the bus is closed"),
-                    Err(_elapsed) => {}
-                }
-            }
-            assert!(nosy.try_next().is_none(), "a viewer heard a hint");
-            let seen = tokio::time::timeout(Duration::from_millis(200), presence.next()).await;
-            assert!(seen.is_err(), "a viewer is present");
-            // The work is there for those who may.
-            assert_eq!(ask_until_served(&other, "rpc/acquire", &[]).await, [3]);
-            worker.await.unwrap().unwrap();
-            server.abort();
-            for bus in [&run, &other, &viewer] {
-                bus.close().await;
-            }
-            router.close().await.unwrap();
         })
         .await;
     }
