@@ -216,7 +216,7 @@ mod tests {
     use super::*;
 
     #[tokio::test]
-    async fn who_may_not_ask_the_orchestrator_asks_the_runs_and_takes_one_that_goes_on() {
+    async fn a_viewer_that_may_not_ask_the_orchestrator_asks_the_runs_and_takes_one_that_goes_on() {
         let bus = socrates_link::MemoryBus::new();
         for (run, ended) in [("a.none-1", json!({ "recording": null })), ("b.reference-1", Value::Null)] {
             let mut serving = bus.serve(&keys::live_meta(&RunId::new(run).unwrap())).await.unwrap();
