@@ -79,7 +79,7 @@ fn a_cluster_with_keys_makes_a_scenario_and_lets_each_role_do_its_part_alone() {
     assert!(clear.code == 2 && clear.err.contains("wants keys"), "{}", clear.err);
     assert!(status().out.contains("0 of 0"), "somebody handed in work: {}", status().out);
 
-    // Who may, does; the scenario is made to its end.
+    // A client does, and the scenario is made to its end.
     let submitted = with("submit", "client", &submit);
     assert_eq!(submitted.code, 0, "{}", submitted.err);
     let ended = poll(|| status().out.contains("done       1 of 1").then_some(()));

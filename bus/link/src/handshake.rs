@@ -60,7 +60,7 @@ async fn in_clear(endpoint: &str, address: &str) -> Option<LinkError> {
     };
     let mut first = [0_u8];
     let look = async {
-        // No message of any protocol: who speaks TLS says so.
+        // This is a message of no protocol: a program that speaks TLS says so.
         stream.write_all(b"socrates?\r\n").await?;
         stream.read_exact(&mut first).await
     };

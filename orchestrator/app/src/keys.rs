@@ -83,7 +83,7 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
         talk.line(&format!("copy       {:<24} to {}", folder.display(), purpose(of_role.role)));
     }
     talk.line(
-        "note       whoever has a folder plays its role: copy it by ssh, keep it from others; only its own role's",
+        "note       a folder is all that its role takes: copy it by ssh, alone, and keep it from others",
     );
     talk.line(
         "note       the key of the authority is not kept: a further host, or a lost folder, needs new keys for all",

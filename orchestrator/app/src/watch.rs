@@ -215,6 +215,22 @@ mod tests {
 
     use super::*;
 
+    #[tokio::test]
+    async fn a_viewer_that_may_not_ask_the_orchestrator_asks_the_runs_and_takes_one_that_goes_on() {
+        let bus = socrates_link::MemoryBus::new();
+        for (run, ended) in [("a.none-1", json!({ "recording": null })), ("b.reference-1", Value::Null)] {
+            let mut serving = bus.serve(&keys::live_meta(&RunId::new(run).unwrap())).await.unwrap();
+            let meta = json!({ "header": { "run": run }, "ended": ended }).to_string();
+            drop(tokio::spawn(async move {
+                while let Some(ask) = serving.next().await {
+                    ask.reply(meta.clone().into_bytes()).await.unwrap();
+                }
+            }));
+        }
+        let named = going_on(&bus).await.unwrap();
+        assert_eq!(named.as_str(), "b.reference-1");
+    }
+
     #[test]
     fn a_person_reads_words_and_a_program_reads_numbers() {
         let (human, node) = (HumanId::new(1), NodeId::new("h5").unwrap());

@@ -79,7 +79,7 @@ async fn a_router_that_is_not_what_it_should_be_is_not_trusted() {
         let why = refused(ours.guest_config(Role::Client, &tcp.replace("tcp/", "tls/"))).await;
         assert!(why.contains("does not speak TLS"), "{why}");
         router.close().await;
-        // A worker's certificate names no host: whoever stole it cannot play the router.
+        // A worker's certificate names no host: with it nobody can play the router.
         let endpoint = format!("tls/127.0.0.1:{}", free_port());
         let listening = ZenohConfig::new(Mode::Router, "t", "r").listen(&endpoint);
         let why = refused(listening.credentials(Some(ours.keys(Role::Worker)))).await;

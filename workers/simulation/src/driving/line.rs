@@ -153,6 +153,7 @@ pub fn told(why: &LinkError) -> String {
         | LinkError::Incompatible { .. }
         | LinkError::Refused { .. }
         | LinkError::Absent { .. }
+        | LinkError::Keys { .. }
         | LinkError::Closed
         | LinkError::Transport { .. } => why.to_string(),
     }
