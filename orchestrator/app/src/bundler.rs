@@ -213,7 +213,7 @@ impl Shared {
         }
         let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let finished = Finished { dir: &dir, work: &self.work, id, prepared, seed: *seed, alone: false };
-        let bundle = finished.from_store(reader.as_ref().ok_or_else(gone)?)?;
+        let bundle = finished.by_store(reader.as_ref().ok_or_else(gone)?)?;
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
         Card::of(&bundle, Arc::clone(location), id.as_str(), &reports)
     }

@@ -10,7 +10,7 @@ use socrates_model::job::Stage;
 use tokio::sync::mpsc;
 
 use crate::config::Config;
-use crate::crew::{Crew, Role};
+use crate::crew::{Crew, Member};
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
 use crate::output::Printer;
@@ -132,7 +132,7 @@ fn roles(
     dir: &Path,
     stages: &[Stage],
     slots: u32,
-) -> Result<Vec<Role>, Complaint> {
+) -> Result<Vec<Member>, Complaint> {
     let mut roles = Vec::new();
     for stage in stages {
         let count = if *stage == Stage::Simulation { slots } else { 1 };
@@ -141,7 +141,7 @@ fn roles(
             let words = ["worker", stage.name(), "--spool", &spool, "--connect", &options.connect];
             let last = ["--namespace", &options.namespace, "--tied", "--durable"];
             let own = words.into_iter().chain(last).map(str::to_owned).collect();
-            roles.push(Role::new(config, &name, own, Vec::new())?);
+            roles.push(Member::new(config, &name, own, Vec::new())?);
         }
     }
     Ok(roles)

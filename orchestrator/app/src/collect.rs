@@ -199,7 +199,7 @@ impl Known {
             }
             let prepared = &request.prepared;
             let finished = Finished { dir: &dir, work: &work, id: &id, prepared, seed: spec.seed, alone: false };
-            let what = finished.from_rows(rows, &fetch).and_then(|bundle| {
+            let what = finished.by_rows(rows, &fetch).and_then(|bundle| {
                 let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
                 Card::of(&bundle, Arc::clone(&request.location), id.as_str(), &reports)
             });

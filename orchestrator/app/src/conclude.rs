@@ -32,14 +32,14 @@ pub(crate) struct Finished<'a> {
 
 impl Finished<'_> {
     /// The bundle, written from what the job store and the artifacts of the work folder tell of it.
-    pub(crate) fn from_store(&self, reader: &Reader) -> Result<Bundle, Complaint> {
+    pub(crate) fn by_store(&self, reader: &Reader) -> Result<Bundle, Complaint> {
         let rows = reader.scenario(self.id).map_err(work::unread)?;
         let blobs = work::blobs(self.work);
-        self.from_rows(rows, &|digest| work::fetch(&blobs, digest))
+        self.by_rows(rows, &|digest| work::fetch(&blobs, digest))
     }
 
     /// The bundle, written from these rows, with artifacts from wherever they are.
-    pub(crate) fn from_rows(&self, rows: Snapshot, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
+    pub(crate) fn by_rows(&self, rows: Snapshot, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
         let Self { dir, work, id, prepared, seed, alone } = *self;
         let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;

@@ -46,7 +46,7 @@ impl Crew {
     /// Starts a child and keeps it alive until it died so often in a minute.
     pub(crate) fn add(
         &mut self,
-        role: Role,
+        role: Member,
         report: mpsc::Sender<Complaint>,
         restarts: usize,
     ) -> Result<(), Complaint> {
@@ -78,7 +78,7 @@ impl Crew {
 
 /// What a child is started with.
 #[derive(Debug, Clone)]
-pub(crate) struct Role {
+pub(crate) struct Member {
     /// What it is called in messages.
     pub(crate) name: String,
     args: Vec<String>,
@@ -90,7 +90,7 @@ pub(crate) struct Role {
     few_arenas: bool,
 }
 
-impl Role {
+impl Member {
     /// A child of this program with these arguments, and those that are passed on to every child.
     pub(crate) fn new(config: &Config, name: &str, own: Vec<String>, first: Vec<String>) -> Result<Self, Complaint> {
         let mut args = own;
@@ -105,7 +105,7 @@ pub(crate) fn ours(what: &str) -> Complaint {
     Complaint::input(what, "`socrates doctor` checks this machine").with_code(Code::Ours)
 }
 
-fn spawn(role: &Role, more: &[String]) -> Result<Child, Complaint> {
+fn spawn(role: &Member, more: &[String]) -> Result<Child, Complaint> {
     let mut command = command(&role.program);
     if role.few_arenas {
         command.env(ARENAS.0, ARENAS.1);
@@ -148,7 +148,7 @@ async fn drained(mut child: Child, pipe: Option<ChildStdin>, stopped: &mut watch
 
 /// Keeps one child alive until told to stop.
 async fn keep(
-    role: Role,
+    role: Member,
     mut child: Child,
     mut stopped: watch::Receiver<Stop>,
     report: mpsc::Sender<Complaint>,

@@ -42,7 +42,7 @@ pub(crate) fn of_one_machine(dir: &Path) -> Result<(), Complaint> {
     };
     std::fs::create_dir_all(dir).map_err(cannot)?;
     let kind = rustix::fs::statfs(dir).map_err(|why| cannot(why.into()))?.f_type;
-    shared(kind.into()).map_or(Ok(()), |name| {
+    shared(kind).map_or(Ok(()), |name| {
         Err(Complaint::input(
             format!("`{shown}` lies on {name}, which several machines see: the store of jobs would be lost there sooner or later"),
             "--dir names a folder on a disk of this machine, such as /var/lib/socrates; artifacts and bundles are fetched with \

@@ -16,6 +16,8 @@ use crate::words::plural;
 
 /// The value of the configuration that names the folder of a role.
 pub const SETTING: &str = "bus.keys";
+/// Days before the end of keys from which on it is told: time to make new ones and to copy them.
+const FEW_DAYS: u64 = 14;
 /// A folder that its owner alone can enter.
 const OWNER_FOLDER: u32 = 0o700;
 
@@ -82,9 +84,7 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
         let folder = dir.join(of_role.role.name());
         talk.line(&format!("copy       {:<24} to {}", folder.display(), purpose(of_role.role)));
     }
-    talk.line(
-        "note       a folder is all that its role takes: copy it by ssh, alone, and keep it from others",
-    );
+    talk.line("note       a folder is all that its role takes: copy it by ssh, alone, and keep it from others");
     talk.line(
         "note       the key of the authority is not kept: a further host, or a lost folder, needs new keys for all",
     );
@@ -116,15 +116,23 @@ pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<C
         let what = format!("the keys in `{folder}` are of the role `{}`, which may not do this", keys.role());
         return Err(Complaint::input(what, format!("--keys with the folder of the role `{role}`")));
     }
+    let days = keys.days_left();
+    if days < FEW_DAYS {
+        tracing::warn!(
+            folder,
+            days,
+            "the keys hold only a few more days; `socrates cluster keys` makes new ones for all"
+        );
+    }
     Ok(Some(keys))
 }
 
 /// What the bus says, for a person: keys bring their own hint.
 pub(crate) fn told(why: LinkError, what: &str, hint: &str) -> Complaint {
-    match why {
-        LinkError::Keys { what: wrong, hint } => Complaint::input(format!("{what}: {wrong}"), hint),
-        other => Complaint::input(format!("{what}: {other}"), hint),
+    if let LinkError::Keys { what: wrong, hint } = why {
+        return Complaint::input(format!("{what}: {wrong}"), hint);
     }
+    Complaint::input(format!("{what}: {why}"), hint)
 }
 
 #[cfg(test)]

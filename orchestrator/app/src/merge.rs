@@ -298,7 +298,7 @@ mod tests {
         let zero = shard(at, "zero", "0/3", "w", &["s0"]);
         let again = shard(at, "again", "0/3", "w", &["s0"]);
         let other = shard(at, "other", "1/3", "v", &["s1"]);
-        let why = merged(&[zero.clone()]).unwrap_err();
+        let why = merged(std::slice::from_ref(&zero)).unwrap_err();
         assert!(
             why.what.contains("2 of 3") && why.what.contains("1/3, 2/3") && why.hint.contains("--shard 1/3"),
             "{why}"

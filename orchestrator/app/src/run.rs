@@ -256,7 +256,7 @@ async fn one(
             (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
         move || -> Result<Bundle, Complaint> {
             let reader = Reader::open(&work::store(&work)).map_err(work::unread)?;
-            Finished { dir: &dir, work: &work, id: &id, prepared: &prepared, seed, alone: true }.from_store(&reader)
+            Finished { dir: &dir, work: &work, id: &id, prepared: &prepared, seed, alone: true }.by_store(&reader)
         }
     };
     let want = Wanted { id, index: 0, seed: options.seed, prepared: &prepared };

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 use tokio::sync::mpsc;
 
 use crate::config::Config;
-use crate::crew::{Crew, Role, ours};
+use crate::crew::{Crew, Member, ours};
 use crate::driver_process::DriverCommand;
 use crate::exit::{Code, Complaint};
 use crate::router::{ENDPOINT_FILE, Router, SOCKET, read_endpoint};
@@ -104,11 +104,11 @@ fn roles(
     namespace: &str,
     simulations: u32,
     config: &Config,
-) -> Result<Vec<Role>, Complaint> {
+) -> Result<Vec<Member>, Complaint> {
     let text = |path: PathBuf| path.display().to_string();
     let role = |name: &str, own: &[String], first: Vec<String>| {
         let at = ["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned);
-        Role::new(config, name, [own, &at].concat(), first)
+        Member::new(config, name, [own, &at].concat(), first)
     };
     // Whoever knows of a commit runs on this machine.
     let words = ["orchestrator", "--dir", &text(work.to_path_buf()), "--durable", "process"].map(str::to_owned);
