@@ -12,7 +12,7 @@ mod whole;
 
 pub(crate) use page::page;
 pub(crate) use read::{changed, commands, is_bundle, manifest, read, read_some, reports, reports_in};
-pub(crate) use whole::{copy, whole};
+pub(crate) use whole::{copy, damaged, whole};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -67,7 +67,7 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
         crew.add(role, report.clone(), usize::MAX)?;
     }
     let served: Vec<&str> = stages.iter().map(|stage| stage.name()).collect();
-    talk.line(&format!("working    {} for {}: {}", plural(count, "process"), options.connect, served.join(", ")));
+    talk.line(&format!("working    {} for {}: {}", plural(count, "worker"), options.connect, served.join(", ")));
     let ended = tokio::select! {
         why = gave_up.recv() => why.map_or(Ok(()), Err),
         _ = signals.interrupt.recv() => Ok(()),

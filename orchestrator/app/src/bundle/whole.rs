@@ -14,7 +14,7 @@ const DEPTH: usize = 8;
 const NAMED: usize = 3;
 
 /// Files of a finished bundle that are gone or not as they were written, in order of their names.
-fn damaged(dir: &Path) -> Result<Vec<String>, Complaint> {
+pub(crate) fn damaged(dir: &Path) -> Result<Vec<String>, Complaint> {
     let manifest = finished(dir)?;
     let same = |(name, digest): &(&String, &Digest)| {
         std::fs::read(dir.join(name)).is_ok_and(|bytes| Digest::of(&bytes) == **digest)

@@ -6,7 +6,8 @@ use clap::{Args, Subcommand};
 use socrates_app::labels::{Blind, CompareOptions, PageOptions};
 use socrates_app::merge::{self, MergeOptions};
 use socrates_app::output::Printer;
-use socrates_app::{export_chat, labels};
+use socrates_app::query::{self, Condition, QueryOptions};
+use socrates_app::{export_chat, labels, verify};
 
 use super::{Outcome, done};
 
@@ -33,6 +34,27 @@ enum LibraryVerb {
         #[arg(long = "move")]
         moves: bool,
     },
+    /// Check that every file of every bundle is as it was written, and that no scenario of the list lacks.
+    Verify {
+        /// Libraries, bundles, or folders that hold bundles.
+        #[arg(required = true)]
+        what: Vec<PathBuf>,
+    },
+    /// Print the runs that fulfill conditions, as a table, or their folders.
+    Query {
+        /// Folder of the library.
+        library: PathBuf,
+        /// A condition on a column of `index.csv`, such as `verdict=realised` or `human_distance_min<0.5` (= != < <= > >= ~); all of several
+        /// have to hold.
+        #[arg(long = "where", value_name = "CONDITION")]
+        conditions: Vec<Condition>,
+        /// Columns to print, separated by commas; all if it is left out.
+        #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
+        columns: Vec<String>,
+        /// Print the folders of the scenarios alone, for other commands.
+        #[arg(long, conflicts_with = "columns")]
+        paths: bool,
+    },
     /// Write what authors were asked and answered as training data.
     Export {
         /// Bundle folders, or folders that hold bundles.
@@ -49,6 +71,11 @@ impl Library {
         match &self.verb {
             LibraryVerb::Merge { shards, out, moves } => {
                 merge::merge(talk, &MergeOptions { shards: shards.clone(), out: out.clone(), moves: *moves })
+            }
+            LibraryVerb::Verify { what } => verify::verify(talk, what),
+            LibraryVerb::Query { library, conditions, columns, paths } => {
+                let (library, conditions) = (library.clone(), conditions.clone());
+                query::query(talk, &QueryOptions { library, conditions, columns: columns.clone(), paths: *paths })
             }
             LibraryVerb::Export { what, chat_jsonl } => done(export_chat::export(talk, what, chat_jsonl)),
         }
