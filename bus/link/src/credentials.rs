@@ -38,6 +38,7 @@ impl RoleFile {
 pub struct Credentials {
     folder: PathBuf,
     role: Role,
+    days_left: u64,
 }
 
 impl Credentials {
@@ -45,6 +46,12 @@ impl Credentials {
     #[must_use]
     pub const fn role(&self) -> Role {
         self.role
+    }
+
+    /// Whole days that the certificate held when it was read.
+    #[must_use]
+    pub const fn days_left(&self) -> u64 {
+        self.days_left
     }
 
     /// The folder, as a whole path.
@@ -87,12 +94,14 @@ mod door {
     use x509_parser::certificate::X509Certificate;
     use x509_parser::pem::parse_x509_pem;
 
-    use super::{Credentials, LinkError, Path, PathBuf, Role, RoleFile};
+    use super::{Credentials, LinkError, Path, Role, RoleFile};
 
     /// Largest file that is read, bytes: a chain of certificates has a few thousand.
     const MOST_BYTES: u64 = 64 * 1024;
     /// Signs that have a meaning in an endpoint of the transport, to which paths are handed.
     const ODD: [char; 4] = [';', '#', '?', '|'];
+    /// Seconds of a day.
+    const DAY_S: i64 = 24 * 3600;
     /// What is said wherever a file does not fit.
     const ANEW: &str = "copy the folder of the role again, as `socrates cluster keys` made it";
 
@@ -125,7 +134,7 @@ mod door {
             return Err(bad(what, ANEW));
         }
         holds(&file(RoleFile::Authority), &authority, now_s)?;
-        holds(&file(RoleFile::Certificate), &cert, now_s)?;
+        let days_left = holds(&file(RoleFile::Certificate), &cert, now_s)?;
         let name = cert.subject().iter_common_name().next().and_then(|name| name.as_str().ok()).unwrap_or_default();
         let role = Role::of_name(name).ok_or_else(|| {
             let name: String = name.chars().take(80).collect();
@@ -139,7 +148,7 @@ mod door {
         if key.public_key_raw() != &*cert.public_key().subject_public_key.data {
             return Err(bad(format!("`{}` is not the key of `{shown}`", file(RoleFile::Key).display()), ANEW));
         }
-        Ok(Credentials { folder: whole, role })
+        Ok(Credentials { folder: whole, role, days_left })
     }
 
     /// A key that others can read is no secret.
@@ -180,7 +189,8 @@ mod door {
         read.map(|(_, cert)| cert).map_err(|why| bad(format!("`{}` is not a certificate: {why}", file.display()), ANEW))
     }
 
-    fn holds(file: &PathBuf, cert: &X509Certificate<'_>, now_s: u64) -> Result<(), LinkError> {
+    /// Whole days that it still holds.
+    fn holds(file: &Path, cert: &X509Certificate<'_>, now_s: u64) -> Result<u64, LinkError> {
         let now = i64::try_from(now_s).unwrap_or(i64::MAX);
         let (from, to) = (&cert.validity().not_before, &cert.validity().not_after);
         if now > to.timestamp() {
@@ -191,6 +201,6 @@ mod door {
             let what = format!("`{}` does not hold before {from}", file.display());
             return Err(bad(what, "set the clock of this machine"));
         }
-        Ok(())
+        Ok(u64::try_from((to.timestamp() - now) / DAY_S).unwrap_or_default())
     }
 }

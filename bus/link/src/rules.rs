@@ -279,7 +279,8 @@ pub fn router_config() -> String {
 /// addresses always fits and nobody fills the memory of a router.
 pub(crate) const MOST_BYTES: usize = 16 * socrates_model::job::MESSAGE_BYTES;
 
-#[cfg(all(test, feature = "zenoh"))]
+#[cfg(test)]
+#[cfg(feature = "zenoh")]
 mod tests {
     use zenoh::key_expr::keyexpr;
 

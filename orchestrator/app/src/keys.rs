@@ -16,6 +16,8 @@ use crate::words::plural;
 
 /// The value of the configuration that names the folder of a role.
 pub const SETTING: &str = "bus.keys";
+/// Days before the end of keys from which on it is told: time to make new ones and to copy them.
+const FEW_DAYS: u64 = 14;
 /// A folder that its owner alone can enter.
 const OWNER_FOLDER: u32 = 0o700;
 
@@ -82,9 +84,7 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
         let folder = dir.join(of_role.role.name());
         talk.line(&format!("copy       {:<24} to {}", folder.display(), purpose(of_role.role)));
     }
-    talk.line(
-        "note       a folder is all that its role takes: copy it by ssh, alone, and keep it from others",
-    );
+    talk.line("note       a folder is all that its role takes: copy it by ssh, alone, and keep it from others");
     talk.line(
         "note       the key of the authority is not kept: a further host, or a lost folder, needs new keys for all",
     );
@@ -118,18 +118,27 @@ pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<C
         let what = format!("the keys in `{folder}` are of the role `{}`, which may not do this", keys.role());
         return Err(Complaint::input(what, format!("--keys with the folder of the role `{role}`")));
     }
+    let days = keys.days_left();
+    if days < FEW_DAYS {
+        tracing::warn!(
+            folder,
+            days,
+            "the keys hold only a few more days; `socrates cluster keys` makes new ones for all"
+        );
+    }
     Ok(Some(keys))
 }
 
 /// What the bus says, for a person: keys bring their own hint.
 pub(crate) fn told(why: LinkError, what: &str, hint: &str) -> Complaint {
-    match why {
-        LinkError::Keys { what: wrong, hint } => Complaint::input(format!("{what}: {wrong}"), hint),
-        other => Complaint::input(format!("{what}: {other}"), hint),
+    if let LinkError::Keys { what: wrong, hint } = &why {
+        return Complaint::input(format!("{what}: {wrong}"), hint.as_str());
     }
+    Complaint::input(format!("{what}: {why}"), hint)
 }
 
 #[cfg(test)]
+#[cfg(feature = "zenoh")]
 mod tests {
     use super::*;
     use crate::output::Format;
@@ -138,7 +147,6 @@ mod tests {
         KeysOptions { dir: dir.to_path_buf(), hosts: vec!["lab-3".to_owned()], days: 30, force }
     }
 
-    #[cfg(feature = "zenoh")]
     #[test]
     fn each_role_gets_a_folder_that_its_owner_alone_can_use() {
         let folder = tempfile::tempdir().unwrap();
@@ -162,7 +170,6 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "zenoh")]
     #[test]
     fn keys_that_are_there_are_replaced_only_when_that_is_meant() {
         let folder = tempfile::tempdir().unwrap();
@@ -176,7 +183,6 @@ mod tests {
         assert_ne!(std::fs::read(&key).unwrap(), before);
     }
 
-    #[cfg(feature = "zenoh")]
     #[test]
     fn keys_of_another_role_are_refused_before_anything_is_asked() {
         let folder = tempfile::tempdir().unwrap();

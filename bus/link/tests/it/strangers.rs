@@ -183,6 +183,7 @@ fn keys_hold_from_the_day_before_they_are_made_until_their_last_day() {
     let folder = Deployment::made(&KeysWish { hosts: vec![], days: 3, now_s: made_s });
     let read = |at_s: u64| Credentials::read(&folder.folder(Role::Client), at_s);
     assert!(read(made_s - DAY_S + 60).is_ok() && read(made_s + 3 * DAY_S - 60).is_ok());
+    assert_eq!(read(made_s + 60).unwrap().days_left(), 2);
     let early = read(made_s - 2 * DAY_S).unwrap_err().to_string();
     assert!(early.contains("does not hold before") && early.contains("clock"), "{early}");
     let late = read(made_s + 3 * DAY_S + 60).unwrap_err().to_string();
