@@ -3,27 +3,14 @@
 //! The authority's own key is forgotten at once. Nobody can sign a further certificate, and new keys are made for all roles together.
 
 use std::net::IpAddr;
-use std::time::Duration;
 
-use rcgen::{
-    BasicConstraints, CertificateParams, CertifiedIssuer, DistinguishedName, DnType, ExtendedKeyUsagePurpose, IsCa,
-    KeyPair, KeyUsagePurpose, date_time_ymd,
-};
-
-use crate::credentials::RoleFile;
 use crate::error::LinkError;
-use crate::rules::{Role, router_config};
+use crate::rules::Role;
 
-/// Name of the authority in its certificate.
-const AUTHORITY: &str = "SocRATES authority of one deployment";
-/// Certificates hold from so long before they are made, s: clocks of machines differ.
-const BEFORE_S: u64 = 24 * 3600;
 /// Longest time that certificates may hold, days: ten years.
 const MOST_DAYS: u32 = 3650;
 /// Most hosts in a certificate.
 const MOST_HOSTS: usize = 64;
-/// Latest beginning that is written, s since 1970 (the year 2200): a clock beyond it is wrong.
-const LATEST_S: u64 = 7_258_118_400;
 /// Hosts that are always named.
 const HERE: [&str; 2] = ["localhost", "127.0.0.1"];
 
@@ -71,7 +58,8 @@ pub fn host_of(text: &str) -> Result<String, LinkError> {
 /// Makes the keys of every role. Two calls make different ones.
 ///
 /// # Errors
-/// [`LinkError::Keys`] for a host that is none, more than 64 of them, or days outside 1 to 3650.
+/// [`LinkError::Keys`] for a host that is none, more than 64 of them, or days outside 1 to 3650; [`LinkError::Absent`] in a program
+/// without the feature `zenoh`.
 pub fn keys_of(wish: &KeysWish) -> Result<Vec<RoleKeys>, LinkError> {
     let bad = |what: String, hint: &str| LinkError::Keys { what, hint: hint.to_owned() };
     if !(1..=MOST_DAYS).contains(&wish.days) {
@@ -84,51 +72,22 @@ pub fn keys_of(wish: &KeysWish) -> Result<Vec<RoleKeys>, LinkError> {
     hosts.extend(HERE.map(str::to_owned));
     hosts.sort();
     hosts.dedup();
-    made(&hosts, wish)
-        .map_err(|why| bad(format!("keys cannot be made: {why}"), "`socrates doctor` checks this machine"))
+    signed(&hosts, wish)
 }
 
-fn made(hosts: &[String], wish: &KeysWish) -> Result<Vec<RoleKeys>, rcgen::Error> {
-    let mut root = params(&[], AUTHORITY, wish)?;
-    root.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
-    root.key_usages = vec![KeyUsagePurpose::KeyCertSign, KeyUsagePurpose::CrlSign];
-    let authority = CertifiedIssuer::self_signed(root, KeyPair::generate()?)?;
-    let mut keys = Vec::new();
-    for role in Role::ALL {
-        let mut leaf = params(if role.listens() { hosts } else { &[] }, role.name(), wish)?;
-        leaf.use_authority_key_identifier_extension = true;
-        leaf.key_usages = vec![KeyUsagePurpose::DigitalSignature];
-        if role.listens() {
-            leaf.extended_key_usages.push(ExtendedKeyUsagePurpose::ServerAuth);
-        }
-        if role.connects() {
-            leaf.extended_key_usages.push(ExtendedKeyUsagePurpose::ClientAuth);
-        }
-        let key = KeyPair::generate()?;
-        let cert = leaf.signed_by(&key, &authority)?;
-        let mut files = vec![
-            (RoleFile::Authority.name(), authority.pem()),
-            (RoleFile::Certificate.name(), cert.pem()),
-            (RoleFile::Key.name(), key.serialize_pem()),
-        ];
-        if role == Role::Router {
-            files.push(("router.json5", router_config()));
-        }
-        keys.push(RoleKeys { role, files });
-    }
-    Ok(keys)
+/// Signs them.
+#[cfg(feature = "zenoh")]
+fn signed(hosts: &[String], wish: &KeysWish) -> Result<Vec<RoleKeys>, LinkError> {
+    crate::certificates::made(hosts, wish).map_err(|why| LinkError::Keys {
+        what: format!("keys cannot be made: {why}"),
+        hint: "`socrates doctor` checks this machine".to_owned(),
+    })
 }
 
-/// What every certificate says.
-fn params(hosts: &[String], name: &str, wish: &KeysWish) -> Result<CertificateParams, rcgen::Error> {
-    let mut params = CertificateParams::new(hosts)?;
-    params.distinguished_name = DistinguishedName::new();
-    params.distinguished_name.push(DnType::CommonName, name);
-    let epoch = date_time_ymd(1970, 1, 1);
-    let now_s = wish.now_s.min(LATEST_S);
-    params.not_before = epoch + Duration::from_secs(now_s.saturating_sub(BEFORE_S));
-    params.not_after = epoch + Duration::from_secs(now_s + u64::from(wish.days) * 24 * 3600);
-    Ok(params)
+/// Signs none.
+#[cfg(not(feature = "zenoh"))]
+fn signed(_hosts: &[String], _wish: &KeysWish) -> Result<Vec<RoleKeys>, LinkError> {
+    Err(LinkError::Absent { feature: "zenoh" })
 }
 
 #[cfg(test)]
@@ -158,6 +117,7 @@ mod tests {
         assert!(keys_of(&wish(vec!["a/b".to_owned()], 1)).is_err());
     }
 
+    #[cfg(feature = "zenoh")]
     #[test]
     fn each_role_has_a_folder_of_its_own_and_no_key_is_used_twice() {
         let keys = keys_of(&KeysWish { hosts: vec![], days: 1, now_s: 1_800_000_000 }).unwrap();

@@ -27,8 +27,9 @@ pub use bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Ser
 mod call;
 pub use call::{KIND_REFUSED, Refusal, call, call_envelope};
 
-#[cfg(feature = "zenoh")]
 mod authority;
+#[cfg(feature = "zenoh")]
+mod certificates;
 mod credentials;
 #[cfg(feature = "zenoh")]
 mod handshake;
@@ -37,7 +38,6 @@ mod memory;
 pub mod rules;
 #[cfg(feature = "zenoh")]
 mod zenoh_bus;
-#[cfg(feature = "zenoh")]
 pub use authority::{KeysWish, RoleKeys, host_of, keys_of};
 pub use credentials::{Credentials, RoleFile};
 pub use join::{Mode, TLS, ZenohConfig, join};

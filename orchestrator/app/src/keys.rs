@@ -40,8 +40,8 @@ const fn purpose(role: Role) -> &'static str {
         Role::Orchestrator => {
             "the machine of `socrates cluster up`, which listens or connects with it; it may do everything"
         }
-        Role::Worker => "machines of `socrates cluster work`",
-        Role::Client => "people who use `socrates cluster submit`, `cluster collect` and `socrates status`",
+        Role::Worker => "machines of `socrates cluster worker`",
+        Role::Client => "people who use `socrates cluster submit` and `socrates status`",
         Role::Viewer => "people who use `socrates watch` and `socrates view`; it reads runs and nothing else",
         Role::Driver => "programs that drive a robot or people from outside",
         Role::Router => "a machine of `zenohd -c router.json5`, where the orchestrator is not the router itself",
@@ -91,7 +91,9 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
     let up = dir.join(Role::Orchestrator.name());
     let host = options.hosts.first().map_or("localhost", String::as_str);
     talk.line(&format!("next       socrates cluster up --dir jobs --listen tls/0.0.0.0:7447 --keys {}", up.display()));
-    talk.line(&format!("then       socrates cluster work --connect tls/{host}:7447 --keys worker"));
+    talk.line(&format!(
+        "then       socrates cluster worker STAGE --connect tls/{host}:7447 --spool spool --keys worker"
+    ));
     let folders: Vec<_> = keys.iter().map(|keys| dir.join(keys.role.name()).display().to_string()).collect();
     talk.result(&json!({ "folders": folders, "hosts": hosts, "days": options.days }));
     Ok(())
@@ -129,13 +131,14 @@ pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<C
 
 /// What the bus says, for a person: keys bring their own hint.
 pub(crate) fn told(why: LinkError, what: &str, hint: &str) -> Complaint {
-    if let LinkError::Keys { what: wrong, hint } = why {
-        return Complaint::input(format!("{what}: {wrong}"), hint);
+    if let LinkError::Keys { what: wrong, hint } = &why {
+        return Complaint::input(format!("{what}: {wrong}"), hint.as_str());
     }
     Complaint::input(format!("{what}: {why}"), hint)
 }
 
 #[cfg(test)]
+#[cfg(feature = "zenoh")]
 mod tests {
     use super::*;
     use crate::output::Format;
@@ -144,7 +147,6 @@ mod tests {
         KeysOptions { dir: dir.to_path_buf(), hosts: vec!["lab-3".to_owned()], days: 30, force }
     }
 
-    #[cfg(feature = "zenoh")]
     #[test]
     fn each_role_gets_a_folder_that_its_owner_alone_can_use() {
         let folder = tempfile::tempdir().unwrap();
@@ -168,7 +170,6 @@ mod tests {
         }
     }
 
-    #[cfg(feature = "zenoh")]
     #[test]
     fn keys_that_are_there_are_replaced_only_when_that_is_meant() {
         let folder = tempfile::tempdir().unwrap();
@@ -182,7 +183,6 @@ mod tests {
         assert_ne!(std::fs::read(&key).unwrap(), before);
     }
 
-    #[cfg(feature = "zenoh")]
     #[test]
     fn keys_of_another_role_are_refused_before_anything_is_asked() {
         let folder = tempfile::tempdir().unwrap();
