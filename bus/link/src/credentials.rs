@@ -89,7 +89,7 @@ impl Credentials {
 
 #[cfg(feature = "zenoh")]
 mod door {
-    use std::os::unix::fs::PermissionsExt as _;
+    use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 
     use x509_parser::certificate::X509Certificate;
     use x509_parser::pem::parse_x509_pem;
@@ -151,10 +151,14 @@ mod door {
         Ok(Credentials { folder: whole, role, days_left })
     }
 
-    /// A key that others can read is no secret.
+    /// A key that others can read is no secret. One that the system hands to a service is root's, and the service reads it by its group,
+    /// as secrets of Kubernetes are mounted.
     fn private(key: &Path) -> Result<(), LinkError> {
-        let mode = std::fs::metadata(key).map_err(|why| unread(key, &why))?.permissions().mode();
-        if mode & 0o077 == 0 {
+        let there = std::fs::metadata(key).map_err(|why| unread(key, &why))?;
+        let mode = there.permissions().mode();
+        let ours = std::fs::metadata("/proc/self").is_ok_and(|own| own.uid() == there.uid());
+        let by_group = if there.uid() == 0 && !ours { 0o040 } else { 0 };
+        if mode & 0o077 & !by_group == 0 {
             return Ok(());
         }
         let what = format!("`{}` can be used by others than its owner (mode {:03o})", key.display(), mode & 0o777);

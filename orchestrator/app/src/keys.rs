@@ -40,8 +40,8 @@ const fn purpose(role: Role) -> &'static str {
         Role::Orchestrator => {
             "the machine of `socrates cluster up`, which listens or connects with it; it may do everything"
         }
-        Role::Worker => "machines of `socrates cluster worker`",
-        Role::Client => "people who use `socrates cluster submit` and `socrates status`",
+        Role::Worker => "machines of `socrates cluster work`",
+        Role::Client => "people who use `socrates cluster submit`, `cluster collect` and `socrates status`",
         Role::Viewer => "people who use `socrates watch` and `socrates view`; it reads runs and nothing else",
         Role::Driver => "programs that drive a robot or people from outside",
         Role::Router => "a machine of `zenohd -c router.json5`, where the orchestrator is not the router itself",
@@ -92,7 +92,7 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
     let host = options.hosts.first().map_or("localhost", String::as_str);
     talk.line(&format!("next       socrates cluster up --dir jobs --listen tls/0.0.0.0:7447 --keys {}", up.display()));
     talk.line(&format!(
-        "then       socrates cluster worker STAGE --connect tls/{host}:7447 --spool spool --keys worker"
+        "then       socrates cluster work --connect tls/{host}:7447 --keys worker"
     ));
     let folders: Vec<_> = keys.iter().map(|keys| dir.join(keys.role.name()).display().to_string()).collect();
     talk.result(&json!({ "folders": folders, "hosts": hosts, "days": options.days }));
