@@ -91,9 +91,16 @@ pub async fn submit(
         plural(count, "scenario"),
         plural(prepared.len(), "request")
     ));
-    talk.line(&format!("next       socrates status {}@{}", to.connect, to.namespace));
+    let keys = match config.text(crate::keys::SETTING) {
+        folder if folder.is_empty() => String::new(),
+        folder => format!(" --keys {}", shell(std::path::Path::new(&folder))),
+    };
+    talk.line(&format!("next       socrates status {}@{}{keys}", to.connect, to.namespace));
     let named = shell(std::path::Path::new(&batch));
-    talk.line(&format!("then       socrates cluster collect --connect {} --batch {named} --out library", to.connect));
+    talk.line(&format!(
+        "then       socrates cluster collect --connect {} --batch {named} --out library{keys}",
+        to.connect
+    ));
     let refusals: Vec<_> = refused.iter().map(crate::refused::Refused::object).collect();
     talk.result(&json!({ "submitted": count, "batch": batch, "refused": refusals }));
     Ok(if refused.is_empty() { Code::Ok } else { Code::Input })

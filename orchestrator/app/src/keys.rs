@@ -91,9 +91,7 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
     let up = dir.join(Role::Orchestrator.name());
     let host = options.hosts.first().map_or("localhost", String::as_str);
     talk.line(&format!("next       socrates cluster up --dir jobs --listen tls/0.0.0.0:7447 --keys {}", up.display()));
-    talk.line(&format!(
-        "then       socrates cluster work --connect tls/{host}:7447 --keys worker"
-    ));
+    talk.line(&format!("then       socrates cluster work --connect tls/{host}:7447 --keys worker"));
     let folders: Vec<_> = keys.iter().map(|keys| dir.join(keys.role.name()).display().to_string()).collect();
     talk.result(&json!({ "folders": folders, "hosts": hosts, "days": options.days }));
     Ok(())

@@ -173,8 +173,10 @@ impl Library {
 
     /// What is in it, in lines: how many were made, and how many different ones those are.
     pub(crate) fn told(&self) -> Vec<String> {
-        let mut lines =
-            vec![format!("made       {} of {} · {}", self.scenarios.len(), self.count, counted(self.scenarios.iter()))];
+        let mut lines = vec![format!("made       {} of {}", self.scenarios.len(), self.count)];
+        if let (Some(made), false) = (lines.first_mut(), self.scenarios.is_empty()) {
+            made.push_str(&format!(" · {}", counted(self.scenarios.iter())));
+        }
         let repeats = self.scenarios.iter().filter(|row| row.repeats.is_some()).count();
         if repeats > 0 {
             lines.push(format!("distinct   {} · {}", self.distinct().count(), counted(self.distinct())));

@@ -67,7 +67,9 @@ async fn a_question_reaches_the_orchestrator_from_the_roles_that_may_put_it_alon
                     keys::BLOB_GET,
                     keys::BLOB_PUT,
                 ],
-                Role::Client => &[keys::SUBMIT, keys::CONTROL, keys::STATUS, keys::BLOB_GET, keys::BLOB_PUT],
+                Role::Client => {
+                    &[keys::SUBMIT, keys::CONTROL, keys::STATUS, keys::PAST, keys::BLOB_GET, keys::BLOB_PUT]
+                }
                 Role::Viewer => &[keys::BLOB_GET],
                 Role::Driver | Role::Orchestrator | Role::Router => &[],
             };
