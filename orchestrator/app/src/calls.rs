@@ -20,8 +20,9 @@ const ROWS_MOST: u64 = 256 << 20;
 /// Scenarios in one submit message; keeps it under 64 KiB.
 const SUBMIT_AT_ONCE: usize = 40;
 
-/// Submits scenarios, in several messages if need be.
-pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>) -> Result<(), Complaint> {
+/// Submits scenarios, in several messages if need be; gives how many were not known before.
+pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>) -> Result<u64, Complaint> {
+    let mut fresh: u64 = 0;
     let mut specs = specs.into_iter().peekable();
     while specs.peek().is_some() {
         let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
@@ -29,7 +30,10 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
         let started = Instant::now();
         loop {
             match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
-                Ok(Submitted::Accepted { .. }) => break,
+                Ok(Submitted::Accepted { new }) => {
+                    fresh = fresh.saturating_add(new.into());
+                    break;
+                }
                 Ok(Submitted::Refused { why }) => {
                     return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
                 }
@@ -43,7 +47,7 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
             }
         }
     }
-    Ok(())
+    Ok(fresh)
 }
 
 /// One page of statuses.

@@ -84,12 +84,16 @@ pub async fn submit(
     }
     let count = specs.len();
     let batch = to.batch.clone().unwrap_or_else(|| format!("batch-{}", library.short()));
-    calls::submit(bus.as_ref(), &batch, specs).await?;
+    let fresh = calls::submit(bus.as_ref(), &batch, specs).await?;
     bus.close().await;
     talk.line(&format!(
-        "submitted  {} from {} as `{batch}`",
+        "submitted  {} from {} as `{batch}`{}",
         plural(count, "scenario"),
-        plural(prepared.len(), "request")
+        plural(prepared.len(), "request"),
+        match count.saturating_sub(usize::try_from(fresh).unwrap_or(usize::MAX)) {
+            0 => String::new(),
+            known => format!(" · {known} of them were there already"),
+        }
     ));
     let keys = match config.text(crate::keys::SETTING) {
         folder if folder.is_empty() => String::new(),
@@ -102,7 +106,7 @@ pub async fn submit(
         to.connect
     ));
     let refusals: Vec<_> = refused.iter().map(crate::refused::Refused::object).collect();
-    talk.result(&json!({ "submitted": count, "batch": batch, "refused": refusals }));
+    talk.result(&json!({ "submitted": count, "new": fresh, "batch": batch, "refused": refusals }));
     Ok(if refused.is_empty() { Code::Ok } else { Code::Input })
 }
 

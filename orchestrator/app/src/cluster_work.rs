@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use socrates_kit::Stop;
 use socrates_link::rules::Role;
-use socrates_link::{Presence, keys};
+use socrates_link::{Presence, TLS, keys};
 use socrates_model::job::Stage;
 use tokio::sync::mpsc;
 
@@ -53,7 +53,11 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
     }
     let dir = options.dir.clone().unwrap_or_else(|| PathBuf::from(format!("socrates-work-{}", process::host())));
     // Two crews in one folder would report each other's work.
-    let _hold = Hold::take(&dir)?;
+    let _hold = Hold::take(&dir).map_err(|why| Complaint {
+        what: format!("`{}` is used by another `cluster work`, or cannot be written: {}", dir.display(), why.what),
+        hint: "end that one, or name another folder with --dir".to_owned(),
+        ..why
+    })?;
     let mut signals = Signals::listen()?;
     let bus = process::client(config, Role::Worker, &options.connect, &options.namespace, "crew").await?;
     let mut orchestrators =
@@ -67,6 +71,9 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
         crew.add(role, report.clone(), usize::MAX)?;
     }
     let served: Vec<&str> = stages.iter().map(|stage| stage.name()).collect();
+    if options.connect.starts_with(TLS) {
+        talk.warn(process::TLS_FAULT);
+    }
     talk.line(&format!("working    {} for {}: {}", plural(count, "worker"), options.connect, served.join(", ")));
     let ended = tokio::select! {
         why = gave_up.recv() => why.map_or(Ok(()), Err),

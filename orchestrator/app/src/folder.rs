@@ -2,7 +2,7 @@
 
 use std::fs::{File, Permissions};
 use std::io::Write as _;
-use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
+use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -40,7 +40,8 @@ pub(crate) fn of_one_machine(dir: &Path) -> Result<(), Complaint> {
     let cannot = |why: std::io::Error| {
         Complaint::input(format!("cannot write into `{shown}`: {why}"), "--dir chooses another folder")
     };
-    std::fs::create_dir_all(dir).map_err(cannot)?;
+    // What it holds is its owner's: requests, answers of models, artifacts.
+    std::fs::DirBuilder::new().recursive(true).mode(OWNER).create(dir).map_err(cannot)?;
     let kind = rustix::fs::statfs(dir).map_err(|why| cannot(why.into()))?.f_type;
     shared(kind).map_or(Ok(()), |name| {
         Err(Complaint::input(
@@ -182,7 +183,9 @@ mod tests {
             assert_eq!(shared(own), None, "{own:#x}");
         }
         let folder = tempfile::tempdir().unwrap();
-        of_one_machine(&folder.path().join("new/store")).unwrap();
+        let store = folder.path().join("new/store");
+        of_one_machine(&store).unwrap();
+        assert_eq!(std::fs::metadata(&store).unwrap().mode() & 0o777, OWNER, "jobs are their owner's alone");
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();
         assert!(of_one_machine(&file.join("store")).unwrap_err().what.contains("file/store"));

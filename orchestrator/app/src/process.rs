@@ -63,6 +63,10 @@ pub struct OrchestratorOptions {
     pub alone: bool,
 }
 
+/// What is said where a process that stays speaks TLS.
+pub(crate) const TLS_FAULT: &str = "note       TLS of zenoh 1.10 has a known fault (eclipse-zenoh/zenoh issue 2557): a process that sends and receives much \
+                                   may crash. Nothing is lost; keep `cluster up` alive, see deploy/README.md";
+
 /// Version of the stages' code; results of another version are not reused.
 pub(crate) const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -194,6 +198,9 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
                 let hint = "another port, or end the program that has it";
                 keys::told(why, &format!("cannot listen on `{listen}`"), hint)
             })?;
+            if listen.starts_with(TLS) {
+                talk.warn(TLS_FAULT);
+            }
             talk.warn(&format!("listening  {listen} · namespace {}", options.namespace));
             opened
         }
@@ -253,6 +260,11 @@ pub(crate) async fn client(
         return Err(Complaint::input(what, "connect to an endpoint that begins with tls/, or without keys: --keys ''"));
     }
     let keys = keys::of(config, role, endpoint)?;
+    if keys.is_none() && endpoint.starts_with(TLS) {
+        let hint =
+            format!("--keys names the folder of the role, such as keys/{role}; `socrates cluster keys` makes them");
+        return Err(Complaint::input(format!("`{endpoint}` needs keys"), hint));
+    }
     let settings = ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint).credentials(keys);
     let hint = "is `socrates run` or `socrates cluster up` running there?";
     socrates_link::join(settings).await.map_err(|why| keys::told(why, &format!("cannot connect to `{endpoint}`"), hint))
