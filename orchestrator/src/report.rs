@@ -29,10 +29,7 @@ impl Turn<'_> {
         }
         let key = report.key.clone();
         let Some(job) = self.job(&key) else { return Recorded::Late };
-        // A fence can be guessed; the name of the worker that was granted the attempt is known to it alone.
-        let known = job.attempts.iter().find(|attempt| {
-            attempt.number == report.attempt && attempt.fence == report.fence && attempt.instance == report.instance
-        });
+        let known = job.granted(report.attempt, report.fence, &report.instance);
         let Some(attempt) = known else { return Recorded::Late };
         if attempt.reported {
             return Recorded::Duplicate;
@@ -175,11 +172,7 @@ impl Turn<'_> {
     pub(crate) fn release(&mut self, release: &Release, to: Token) {
         let key = &release.key;
         let known = self.job(key).and_then(|job| {
-            let attempt = job.attempts.iter().find(|attempt| {
-                attempt.number == release.attempt
-                    && attempt.fence == release.fence
-                    && attempt.instance == release.instance
-            })?;
+            let attempt = job.granted(release.attempt, release.fence, &release.instance)?;
             Some((job.state, attempt.end, job.current().is_some_and(|current| current.number == attempt.number)))
         });
         let recorded = match known {

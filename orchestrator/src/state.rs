@@ -179,6 +179,13 @@ impl Job {
         }
     }
 
+    /// The attempt of this number, where it was granted to this worker with this fence. A fence can be guessed; the name of the worker is
+    /// known to it alone.
+    #[must_use]
+    pub fn granted(&self, number: u32, fence: u64, instance: &str) -> Option<&Attempt> {
+        self.attempts.iter().find(|one| one.number == number && one.fence == fence && one.instance == instance)
+    }
+
     /// Whether its result may be used for, and taken from, other jobs with the same key.
     #[must_use]
     pub fn shares(&self) -> bool {

@@ -2,26 +2,13 @@
 
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::Child;
 
 use socrates_tests::program::{Finished, children, poll, start};
 
+use super::{Ended, STAGES};
 use crate::{PROGRAM, WAREHOUSE, socrates};
 
-const STAGES: [&str; 5] = ["proposal", "paths", "behaviors", "simulation", "scoring"];
 const ROLES: [&str; 6] = ["orchestrator", "worker", "client", "viewer", "driver", "router"];
-
-/// Processes that end with the test, however it ends.
-struct Ended(Vec<Child>);
-
-impl Drop for Ended {
-    fn drop(&mut self) {
-        for child in &mut self.0 {
-            drop(child.kill());
-            drop(child.wait());
-        }
-    }
-}
 
 /// Every line of the private keys below a folder, without the first and the last.
 fn secrets(keys: &Path) -> Vec<String> {

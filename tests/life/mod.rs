@@ -26,3 +26,20 @@ mod restarts;
 mod slow_author;
 mod tables;
 mod training;
+
+use std::process::Child;
+
+/// Stages that workers serve.
+const STAGES: [&str; 5] = ["proposal", "paths", "behaviors", "simulation", "scoring"];
+
+/// Processes that end with the test, however it ends.
+struct Ended(Vec<Child>);
+
+impl Drop for Ended {
+    fn drop(&mut self) {
+        for child in &mut self.0 {
+            drop(child.kill());
+            drop(child.wait());
+        }
+    }
+}

@@ -1,25 +1,11 @@
 //! A cluster whose orchestrator is killed and started again.
 
 use std::net::TcpListener;
-use std::process::Child;
 
 use socrates_tests::program::{poll, start};
 
+use super::{Ended, STAGES};
 use crate::{PROGRAM, socrates};
-
-const STAGES: [&str; 5] = ["proposal", "paths", "behaviors", "simulation", "scoring"];
-
-/// Processes that end with the test, however it ends.
-struct Ended(Vec<Child>);
-
-impl Drop for Ended {
-    fn drop(&mut self) {
-        for child in &mut self.0 {
-            drop(child.kill());
-            drop(child.wait());
-        }
-    }
-}
 
 #[test]
 fn a_cluster_that_is_started_again_knows_the_workers_that_go_on() {

@@ -14,12 +14,11 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use socrates_model::{Location, Report, ScenarioId};
+use socrates_model::{Location, ScenarioId};
 use socrates_store::Reader;
 use tokio::sync::Notify;
 
 use crate::batch::Card;
-use crate::bundle;
 use crate::conclude::Finished;
 use crate::exit::Complaint;
 use crate::output::Printer;
@@ -204,17 +203,13 @@ impl Shared {
         let stranger = || Complaint::resumes(format!("the job store holds `{id}`, which nobody asked for"));
         let Order { seed, prepared, location } = self.orders.get(id).ok_or_else(stranger)?;
         let dir = self.root.join(id.as_str());
-        let known = bundle::manifest(&dir).filter(|manifest| manifest.wish == bundle::wish(prepared, *seed));
-        if known.is_some() {
-            return Card::read(&self.root, id.as_str());
-        }
-        if reader.is_none() {
-            *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
-        }
-        let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let finished = Finished { dir: &dir, work: &self.work, id, prepared, seed: *seed, alone: false };
-        let bundle = finished.by_store(reader.as_ref().ok_or_else(gone)?)?;
-        let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
-        Card::of(&bundle, Arc::clone(location), id.as_str(), &reports)
+        finished.card(&self.root, location, |finished| {
+            if reader.is_none() {
+                *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
+            }
+            let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
+            finished.by_store(reader.as_ref().ok_or_else(gone)?)
+        })
     }
 }

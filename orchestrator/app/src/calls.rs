@@ -11,6 +11,8 @@ use crate::exit::Complaint;
 
 /// Limit of one call.
 const CALL: Duration = Duration::from_secs(2);
+/// Limit of one part of an artifact.
+pub(crate) const PART: Duration = Duration::from_secs(10);
 /// How long the orchestrator may be away before the run is given up.
 pub(crate) const AWAY: Duration = Duration::from_secs(60);
 /// Times that the rows of a scenario may change while they are read.
@@ -62,7 +64,7 @@ pub(crate) async fn ends(bus: &dyn Bus) -> Result<Vec<PastEnd>, Complaint> {
         let from = all.last().map_or(0, |end| end.place.saturating_add(1));
         match past(bus, PastAsk::Ends { from }).await? {
             PastPart::Ends(ends) if ends.is_empty() => return Ok(all),
-            // Whoever answers with earlier places would be asked without end.
+            // One that answers with earlier places would be asked without end.
             PastPart::Ends(ends) if ends.iter().any(|end| end.place < from) => {
                 return Err(Complaint::resumes(format!(
                     "the orchestrator told places before {from}, which was asked for"

@@ -1,7 +1,6 @@
 //! `cluster submit`: requests handed to a running orchestrator.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use serde_json::json;
 use socrates_kit::{Blobs, LocalBlobs};
@@ -12,18 +11,16 @@ use socrates_model::wire::ScenarioSpec;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::files::shell;
-use crate::many::{distinct, wish};
+use crate::many::{told_apart, wish};
 use crate::order::Order;
 use crate::output::Printer;
 use crate::prepare::Prepared;
+use crate::refused::Refused;
 use crate::run::prepared_all;
 use crate::run_options::RunOptions;
 use crate::wanted::{Wanted, specs, wanted};
 use crate::words::plural;
 use crate::{calls, process, variants};
-
-/// Time for one part of an artifact.
-const PART: Duration = Duration::from_secs(10);
 
 /// Where scenarios are submitted.
 #[derive(Debug, Clone)]
@@ -49,17 +46,10 @@ pub async fn submit(
 ) -> Result<Code, Complaint> {
     elsewhere(options)?;
     let (mut prepared, refused) = prepared_all(config, requests, options)?;
-    if prepared.is_empty() {
-        let mut complaint =
-            Complaint::input("none of these requests can be run", "`socrates read FILE` looks at one alone");
-        complaint.causes = refused.iter().flat_map(crate::refused::Refused::lines).collect();
-        return Err(complaint);
+    if !refused.is_empty() {
+        Refused::told(talk, &refused, prepared.len())?;
     }
-    for bad in &refused {
-        talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
-    }
-    let names = distinct(prepared.iter().map(|one| one.name.as_str()));
-    prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
+    told_apart(&mut prepared);
     let (library, _) = wish(&prepared, options);
     let bus = process::client(config, Role::Client, &to.connect, &to.namespace, "submit").await?;
     let folder = tempfile::tempdir_in(&config.program().temp).map_err(|why| ours(why.to_string()))?;
@@ -78,7 +68,7 @@ pub async fn submit(
     for digest in digests {
         let bytes = blobs.get(&digest).map_err(|why| ours(why.to_string()))?;
         Blobs::Bus
-            .put(&bus, bytes, PART)
+            .put(&bus, bytes, calls::PART)
             .await
             .map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
     }
@@ -105,7 +95,7 @@ pub async fn submit(
         "then       socrates cluster collect --connect {} --batch {named} --out library{keys}",
         to.connect
     ));
-    let refusals: Vec<_> = refused.iter().map(crate::refused::Refused::object).collect();
+    let refusals: Vec<_> = refused.iter().map(Refused::object).collect();
     talk.result(&json!({ "submitted": count, "new": fresh, "batch": batch, "refused": refusals }));
     Ok(if refused.is_empty() { Code::Ok } else { Code::Input })
 }

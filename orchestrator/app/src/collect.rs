@@ -9,18 +9,16 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
 use socrates_kit::Blobs;
 use socrates_link::Bus;
 use socrates_link::rules::Role;
 use socrates_model::wire::PastEnd;
-use socrates_model::{Digest, Location, Report};
+use socrates_model::{Digest, Location};
 use socrates_orchestrator::Snapshot;
 use tokio::runtime::Handle;
 use tokio::task::JoinSet;
 
-use crate::batch::Card;
 use crate::conclude::Finished;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
@@ -34,10 +32,7 @@ use crate::prepare::Prepared;
 use crate::progress::Progress;
 use crate::run_options::Require;
 use crate::words::plural;
-use crate::{bundle, calls, process};
-
-/// Time for one part of an artifact.
-const PART: Duration = Duration::from_secs(10);
+use crate::{calls, process};
 
 /// What is collected.
 #[derive(Debug, Clone)]
@@ -71,10 +66,7 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
     let hold = Hold::take(&work)?;
     let made = bundles(talk, &known, &done, &root, &work, &hold).await?;
     bus.close().await;
-    let count = u64::try_from(ends.len()).unwrap_or(u64::MAX);
-    let readings = known.readings();
-    let list = Library { wish: library, shard: None, count, readings, scenarios: Vec::new() };
-    many::write(talk, &root, list, made)?;
+    many::write(talk, &root, Library::new(library, None, ends.len(), known.readings()), made)?;
     drop(std::fs::remove_dir_all(&work));
     let code = many::finish(talk, Require::Any, &root, &[])?;
     if done.len() < ends.len() {
@@ -192,17 +184,10 @@ impl Known {
             let spec = spec.ok_or_else(|| lost(id.as_str()))?;
             let request = known.request(&spec, place, &fetch)?;
             let dir = root.join(id.as_str());
-            let wish = bundle::wish(&request.prepared, spec.seed);
             let name = request.prepared.name.clone();
-            if bundle::manifest(&dir).is_some_and(|manifest| manifest.wish == wish) {
-                return Ok(Ended { what: Ok(Card::read(&root, id.as_str())?), scenario: id, request: name });
-            }
             let prepared = &request.prepared;
             let finished = Finished { dir: &dir, work: &work, id: &id, prepared, seed: spec.seed, alone: false };
-            let what = finished.by_rows(rows, &fetch).and_then(|bundle| {
-                let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
-                Card::of(&bundle, Arc::clone(&request.location), id.as_str(), &reports)
-            });
+            let what = finished.card(&root, &request.location, |finished| finished.by_rows(rows, &fetch));
             match what {
                 // The cluster, the disk or this program, not the scenario: nothing is listed as failed that is not.
                 Err(why) if matches!(why.code, Code::Ours | Code::Input) => Err(why),
@@ -241,7 +226,7 @@ impl Known {
 
     /// An artifact over the bus; for threads that may wait.
     fn get(&self, handle: &Handle, digest: &Digest) -> Result<Vec<u8>, Complaint> {
-        let came = handle.block_on(Blobs::Bus.get(&self.bus, *digest, PART));
+        let came = handle.block_on(Blobs::Bus.get(&self.bus, *digest, calls::PART));
         came.map_err(|why| Complaint::resumes(format!("artifact {} cannot be fetched: {why}", digest.short())))
     }
 }

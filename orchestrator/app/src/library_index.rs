@@ -166,6 +166,12 @@ fn counted<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
 }
 
 impl Library {
+    /// A library of `count` scenarios, before any of them is listed.
+    pub(crate) fn new(wish: Digest, shard: Option<Part>, count: usize, readings: Vec<Reading>) -> Self {
+        let count = u64::try_from(count).unwrap_or(u64::MAX);
+        Self { wish, shard, count, readings, scenarios: Vec::new() }
+    }
+
     /// Scenarios that repeat no earlier one.
     pub(crate) fn distinct(&self) -> impl Iterator<Item = &Row> {
         self.scenarios.iter().filter(|row| row.repeats.is_none())

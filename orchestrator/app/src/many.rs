@@ -38,8 +38,7 @@ pub(crate) async fn batch(
     mut prepared: Vec<Prepared>,
     refused: &[Refused],
 ) -> Result<Library, Complaint> {
-    let names = distinct(prepared.iter().map(|one| one.name.as_str()));
-    prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
+    told_apart(&mut prepared);
     let share = options.shard.map_or_else(String::new, |shard| format!("-{}-of-{}", shard.index(), shard.of()));
     let own = || PathBuf::from("runs").join(format!("library-{}{share}", options.seed));
     let base = options.out.clone().unwrap_or_else(own);
@@ -73,8 +72,7 @@ pub(crate) async fn batch(
     let _hold = if wanted.is_empty() { None } else { Some(making.bundled(&mut bundler).await?) };
     let made = ended(&wanted, bundler.finish(talk).await?);
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
-    let list =
-        library_index::Library { wish, shard: part, count: count(wanted.len()), readings, scenarios: Vec::new() };
+    let list = library_index::Library::new(wish, part, wanted.len(), readings);
     write(talk, &root, list, made)?;
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
@@ -96,12 +94,14 @@ pub(crate) fn wish(prepared: &[Prepared], options: &RunOptions) -> (Digest, Opti
     }
 }
 
-fn count(scenarios: usize) -> u64 {
-    u64::try_from(scenarios).unwrap_or(u64::MAX)
+/// Gives every request a name of its own.
+pub(crate) fn told_apart(prepared: &mut [Prepared]) {
+    let names = distinct(prepared.iter().map(|one| one.name.as_str()));
+    prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
 }
 
 /// The names, of which those that an earlier one has already get a number.
-pub(crate) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken: BTreeSet<String> = BTreeSet::new();
     let mut found = Vec::new();
     for name in names {

@@ -85,9 +85,7 @@ pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> 
     hold.check()?;
     let made = pieces.iter().zip(came.into_iter().flatten()).map(|(piece, what)| ended(piece.row, what));
     let made = made.collect::<Result<Vec<Ended>, Complaint>>()?;
-    let count = u64::try_from(pieces.len()).unwrap_or(u64::MAX);
-    let readings = first.library.readings.clone();
-    let list = Library { wish, shard: None, count, readings, scenarios: Vec::new() };
+    let list = Library::new(wish, None, pieces.len(), first.library.readings.clone());
     many::write(talk, &root, list, made)?;
     drop(std::fs::remove_dir_all(&work));
     many::finish(talk, Require::Any, &root, &[])

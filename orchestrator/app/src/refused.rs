@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::exit::Complaint;
+use crate::output::Printer;
 
 /// A request file that cannot be run, beside others that can.
 #[derive(Debug)]
@@ -14,6 +15,25 @@ pub(crate) struct Refused {
 }
 
 impl Refused {
+    /// Says which requests cannot be run, beside the `others` that can, and gives that in a line.
+    ///
+    /// # Errors
+    /// When none can.
+    pub(crate) fn told(talk: &Printer, refused: &[Self], others: usize) -> Result<String, Complaint> {
+        let names: Vec<String> = refused.iter().map(|bad| format!("`{}`", bad.file.display())).collect();
+        let all = refused.len() + others;
+        let what = format!("{} of {all} requests cannot be run: {}", refused.len(), names.join(", "));
+        if others == 0 {
+            let mut complaint = Complaint::input(what, "correct them; `socrates read FILE` looks at one alone");
+            complaint.causes = refused.iter().flat_map(Self::lines).collect();
+            return Err(complaint);
+        }
+        for bad in refused {
+            talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
+        }
+        Ok(what)
+    }
+
     /// The reason, which names the file, then causes and hint, a line each.
     pub(crate) fn lines(&self) -> Vec<String> {
         let first = self.why.what.clone();

@@ -134,17 +134,7 @@ async fn made(
     if refused.is_empty() {
         return many::batch(talk, config, options, prepared, refused).await;
     }
-    let names: Vec<String> = refused.iter().map(|bad| format!("`{}`", bad.file.display())).collect();
-    let all = refused.len() + prepared.len();
-    let what = format!("{} of {all} requests cannot be run: {}", refused.len(), names.join(", "));
-    if prepared.is_empty() {
-        let mut complaint = Complaint::input(what, "correct them; `socrates read FILE` looks at one alone");
-        complaint.causes = refused.iter().flat_map(Refused::lines).collect();
-        return Err(complaint);
-    }
-    for bad in refused {
-        talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
-    }
+    let what = Refused::told(talk, refused, prepared.len())?;
     let library = many::batch(talk, config, options, prepared, refused).await?;
     talk.warn(&format!("error: {what}\n\nhint: the others were run; correct these and run them alone"));
     Ok(Library { code: Code::Input, ..library })

@@ -42,7 +42,7 @@ impl Shard {
         u32::try_from(place % self.step()).is_ok_and(|rest| rest == self.index)
     }
 
-    /// How many of so many scenarios belong to it.
+    /// How many of `whole` scenarios belong to it.
     pub(crate) fn share(self, whole: usize) -> usize {
         let before = usize::try_from(self.index).unwrap_or(usize::MAX);
         whole.saturating_sub(before).div_ceil(self.step())
