@@ -88,6 +88,12 @@ impl Card {
         Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs })
     }
 
+    /// The card of a bundle that was just written for a scenario.
+    pub(crate) fn written(bundle: &Bundle, location: &Arc<Location>, id: &ScenarioId) -> Result<Self, Complaint> {
+        let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
+        Self::of(bundle, Arc::clone(location), id.as_str(), &reports)
+    }
+
     /// The card of a bundle that lies in a folder of this name.
     pub(crate) fn read(root: &Path, name: &str) -> Result<Self, Complaint> {
         let dir = root.join(name);

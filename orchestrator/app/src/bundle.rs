@@ -156,6 +156,11 @@ pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
     Digest::of(text.to_string().as_bytes())
 }
 
+/// Whether the bundle of this wish lies in a folder.
+pub(crate) fn lies_in(dir: &Path, prepared: &Prepared, seed: u64) -> bool {
+    manifest(dir).is_some_and(|manifest| manifest.wish == wish(prepared, seed))
+}
+
 /// Where artifacts are read from.
 pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
 

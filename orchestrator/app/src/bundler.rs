@@ -19,6 +19,7 @@ use socrates_store::Reader;
 use tokio::sync::Notify;
 
 use crate::batch::Card;
+use crate::bundle;
 use crate::conclude::Finished;
 use crate::exit::Complaint;
 use crate::output::Printer;
@@ -203,13 +204,14 @@ impl Shared {
         let stranger = || Complaint::resumes(format!("the job store holds `{id}`, which nobody asked for"));
         let Order { seed, prepared, location } = self.orders.get(id).ok_or_else(stranger)?;
         let dir = self.root.join(id.as_str());
+        if bundle::lies_in(&dir, prepared, *seed) {
+            return Card::read(&self.root, id.as_str());
+        }
+        if reader.is_none() {
+            *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
+        }
+        let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let finished = Finished { dir: &dir, work: &self.work, id, prepared, seed: *seed, alone: false };
-        finished.card(&self.root, location, |finished| {
-            if reader.is_none() {
-                *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
-            }
-            let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
-            finished.by_store(reader.as_ref().ok_or_else(gone)?)
-        })
+        Card::written(&finished.by_store(reader.as_ref().ok_or_else(gone)?)?, location, id)
     }
 }

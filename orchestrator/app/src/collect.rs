@@ -19,6 +19,7 @@ use socrates_orchestrator::Snapshot;
 use tokio::runtime::Handle;
 use tokio::task::JoinSet;
 
+use crate::batch::Card;
 use crate::conclude::Finished;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
@@ -32,7 +33,7 @@ use crate::prepare::Prepared;
 use crate::progress::Progress;
 use crate::run_options::Require;
 use crate::words::plural;
-use crate::{calls, process};
+use crate::{bundle, calls, process};
 
 /// What is collected.
 #[derive(Debug, Clone)]
@@ -186,8 +187,12 @@ impl Known {
             let dir = root.join(id.as_str());
             let name = request.prepared.name.clone();
             let prepared = &request.prepared;
+            if bundle::lies_in(&dir, prepared, spec.seed) {
+                return Ok(Ended { what: Ok(Card::read(&root, id.as_str())?), scenario: id, request: name });
+            }
             let finished = Finished { dir: &dir, work: &work, id: &id, prepared, seed: spec.seed, alone: false };
-            let what = finished.card(&root, &request.location, |finished| finished.by_rows(rows, &fetch));
+            let written = finished.by_rows(rows, &fetch);
+            let what = written.and_then(|bundle| Card::written(&bundle, &request.location, &id));
             match what {
                 // The cluster, the disk or this program, not the scenario: nothing is listed as failed that is not.
                 Err(why) if matches!(why.code, Code::Ours | Code::Input) => Err(why),

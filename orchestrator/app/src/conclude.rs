@@ -1,14 +1,12 @@
 //! The end of one scenario: its bundle, or why there is none.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use socrates_model::job::Stage;
-use socrates_model::{Family, Fault, JobState, Location, Report, ScenarioId};
+use socrates_model::{Family, Fault, JobState, ScenarioId};
 use socrates_orchestrator::Snapshot;
 use socrates_store::Reader;
 
-use crate::batch::Card;
 use crate::bundle::{self, Bundle, Fetch, Past};
 use crate::exit::{Code, Complaint};
 use crate::history::History;
@@ -33,22 +31,6 @@ pub(crate) struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    /// The card of its bundle in a library: of the one that lies there, where it is of the same wish, else of the one that is written.
-    pub(crate) fn card(
-        &self,
-        root: &Path,
-        location: &Arc<Location>,
-        written: impl FnOnce(&Self) -> Result<Bundle, Complaint>,
-    ) -> Result<Card, Complaint> {
-        let wish = bundle::wish(self.prepared, self.seed);
-        if bundle::manifest(self.dir).is_some_and(|manifest| manifest.wish == wish) {
-            return Card::read(root, self.id.as_str());
-        }
-        let bundle = written(self)?;
-        let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
-        Card::of(&bundle, Arc::clone(location), self.id.as_str(), &reports)
-    }
-
     /// The bundle, written from what the job store and the artifacts of the work folder tell of it.
     pub(crate) fn by_store(&self, reader: &Reader) -> Result<Bundle, Complaint> {
         let rows = reader.scenario(self.id).map_err(work::unread)?;
