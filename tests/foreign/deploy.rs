@@ -217,7 +217,7 @@ fn compose_opens_no_port_to_other_machines_without_keys() {
     for (service, role) in [("orchestrator", "orchestrator"), ("workers", "worker")] {
         let service = &keyed["services"][service];
         let words = service["command"].to_string();
-        assert!(words.contains("tls/") && words.contains("\"--keys\"") && !words.contains("--insecure"), "{words}");
+        assert!(words.contains("quic/") && words.contains("\"--keys\"") && !words.contains("--insecure"), "{words}");
         assert!(service["volumes"].to_string().contains(&format!("/keys/{role}:/run/keys:ro")), "{service}");
         assert_eq!((&service["read_only"], &service["user"]), (&Value::from(true), &Value::from("65532:65532")));
     }

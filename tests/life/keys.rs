@@ -1,6 +1,6 @@
 //! A cluster whose machines know each other by keys.
 
-use std::net::TcpListener;
+use std::net::UdpSocket;
 use std::path::Path;
 
 use socrates_tests::program::{Finished, children, poll, start};
@@ -26,11 +26,11 @@ fn a_cluster_with_keys_makes_a_scenario_and_lets_each_role_do_its_part_alone() {
     let made = socrates(at, "keys", &["cluster", "keys", "keys", "--host", "lab-3.example", "--days", "2"]);
     assert_eq!(made.code, 0, "{}", made.err);
     assert!(made.out.contains("keys/worker") && made.out.contains("2 days"), "{}", made.out);
-    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-    let (listen, endpoint) = (format!("tls/127.0.0.1:{port}"), format!("tls/127.0.0.1:{port}@main"));
+    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let (listen, endpoint) = (format!("quic/127.0.0.1:{port}"), format!("quic/127.0.0.1:{port}@main"));
     std::fs::write(at.join("mine.toml"), WAREHOUSE).unwrap();
     // What libraries log of their settings too, so that a secret in any line would be seen.
-    let loud = ["--set", "log.filter=debug,zenoh_link_tls=trace,zenoh_link=trace,zenoh_config=trace"];
+    let loud = ["--set", "log.filter=debug,zenoh_link_quic=trace,zenoh_link=trace,zenoh_config=trace"];
     let up = ["cluster", "up", "--dir", "jobs", "--listen", listen.as_str(), "--keys", "keys/orchestrator"];
     let mut all = Ended(vec![start(PROGRAM, &[&up[..], &loud].concat(), at, "up").unwrap()]);
     for stage in STAGES {
@@ -61,7 +61,7 @@ fn a_cluster_with_keys_makes_a_scenario_and_lets_each_role_do_its_part_alone() {
     assert_eq!(other.code, 0, "{}", other.err);
     let stranger = socrates(at, "stranger", &[&submit[..], &["--keys", "others/client"]].concat());
     assert!(stranger.code == 2 && stranger.err.contains("of another deployment"), "{}", stranger.err);
-    let clear = listen.replace("tls/", "tcp/");
+    let clear = listen.replace("quic/", "tcp/");
     let clear = socrates(at, "clear", &["cluster", "submit", "mine.toml", "--connect", clear.as_str()]);
     assert!(clear.code == 2 && clear.err.contains("wants keys"), "{}", clear.err);
     assert!(status().out.contains("0 of 0"), "somebody handed in work: {}", status().out);
@@ -118,15 +118,17 @@ fn keys_are_made_once_and_what_is_wrong_with_them_is_said() {
     let up = |keys: &str, listen: &str| {
         socrates(at, "up", &["cluster", "up", "--dir", "jobs", "--listen", listen, "--keys", keys])
     };
-    let worker = up("keys/worker", "tls/127.0.0.1:0");
+    let worker = up("keys/worker", "quic/127.0.0.1:0");
     assert!(worker.code == 2 && worker.err.contains("`worker`"), "{}", worker.err);
-    let nothing = up("nowhere", "tls/127.0.0.1:0");
+    let nothing = up("nowhere", "quic/127.0.0.1:0");
     assert!(nothing.code == 2 && nothing.err.contains("no keys in `nowhere`"), "{}", nothing.err);
+    let over_tcp = up("keys/orchestrator", "tls/127.0.0.1:0");
+    assert!(over_tcp.code == 2 && over_tcp.err.contains("write `quic/127.0.0.1:0`"), "{}", over_tcp.err);
     let open = up("keys/orchestrator", "tcp/0.0.0.0:0");
     assert!(open.code == 2 && open.err.contains("--insecure"), "{}", open.err);
     let key = at.join("keys/worker/key.pem");
     std::fs::set_permissions(&key, std::os::unix::fs::PermissionsExt::from_mode(0o644)).unwrap();
-    let seen = ["cluster", "worker", "paths", "--connect", "tls/127.0.0.1:1", "--spool", "s", "--keys", "keys/worker"];
+    let seen = ["cluster", "worker", "paths", "--connect", "quic/127.0.0.1:1", "--spool", "s", "--keys", "keys/worker"];
     let seen = socrates(at, "seen", &seen);
     assert!(seen.code == 2 && seen.err.contains("chmod 600"), "{}", seen.err);
 }

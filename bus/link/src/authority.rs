@@ -100,7 +100,7 @@ mod tests {
             assert_eq!(host_of(good).unwrap(), good.to_lowercase());
         }
         for bad in
-            ["", "a b", "*.lab", "a:7447", "tls/a:1", "-a", "a-", "a..b", "256.1.1.1", "1.2", "ä", &"a".repeat(64)]
+            ["", "a b", "*.lab", "a:7447", "quic/a:1", "-a", "a-", "a..b", "256.1.1.1", "1.2", "ä", &"a".repeat(64)]
         {
             let why = host_of(bad).unwrap_err().to_string();
             assert!(why.contains("is no host") && why.contains("--host"), "`{bad}`: {why}");

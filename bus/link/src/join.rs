@@ -7,8 +7,11 @@ use crate::bus::Bus;
 use crate::credentials::Credentials;
 use crate::error::LinkError;
 
-/// How an endpoint with mutual TLS begins: what it needs, and what shows who connects, are [`Credentials`].
-pub const TLS: &str = "tls/";
+/// How an endpoint with mutual TLS, spoken over QUIC, begins: what it needs, and what shows who connects, are [`Credentials`].
+pub const SECURE: &str = "quic/";
+/// How an endpoint with TLS over TCP begins, which is refused: the transport's link for it reads and writes one stream from two threads
+/// (eclipse-zenoh/zenoh#2557, in 1.10), and processes crashed by it.
+const OVER_TCP: &str = "tls/";
 
 /// The part a participant plays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,8 +29,8 @@ pub enum Mode {
 pub struct ZenohConfig {
     /// Part played.
     pub mode: Mode,
-    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447`, `tls/0.0.0.0:7447` or `unixsock-stream//run/socrates.sock`; none by
-    /// default. One with TLS switches the access rules on ([`crate::rules`]): then a guest may do what its role may, and one
+    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447`, `quic/0.0.0.0:7447` or `unixsock-stream//run/socrates.sock`; none by
+    /// default. One with keys switches the access rules on ([`crate::rules`]): then a guest may do what its role may, and one
     /// without a certificate, who came by another endpoint, nothing.
     pub listen: Vec<String>,
     /// Endpoints to connect to. There is no discovery: what is not listed is not found.
@@ -38,7 +41,7 @@ pub struct ZenohConfig {
     pub name: String,
     /// How long opening keeps trying to connect. Default 10 s. Once open, a lost connection is sought for ever.
     pub patience: Duration,
-    /// Keys for endpoints with TLS; other endpoints need none and use none. Default none.
+    /// Keys for endpoints that begin with [`SECURE`]; other endpoints need none and use none. Default none.
     pub credentials: Option<Credentials>,
 }
 
@@ -84,8 +87,12 @@ impl ZenohConfig {
     /// [`LinkError::Keys`] when they are not.
     pub fn check(&self) -> Result<(), LinkError> {
         let bad = |what: String, hint: &str| Err(LinkError::Keys { what, hint: hint.to_owned() });
-        let with_tls = |endpoints: &'_ [String]| endpoints.iter().find(|one| one.starts_with(TLS)).cloned();
-        let (listens, connects) = (with_tls(&self.listen), with_tls(&self.connect));
+        let of = |start: &str, endpoints: &'_ [String]| endpoints.iter().find(|one| one.starts_with(start)).cloned();
+        if let Some(endpoint) = of(OVER_TCP, &self.listen).or_else(|| of(OVER_TCP, &self.connect)) {
+            let what = format!("`{endpoint}`: TLS over TCP is not spoken");
+            return bad(what, &format!("write `{}`, with its UDP port open", endpoint.replacen(OVER_TCP, SECURE, 1)));
+        }
+        let (listens, connects) = (of(SECURE, &self.listen), of(SECURE, &self.connect));
         let Some(keys) = &self.credentials else {
             return match listens.or(connects) {
                 Some(endpoint) => bad(

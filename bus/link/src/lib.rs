@@ -37,10 +37,12 @@ mod join;
 mod memory;
 pub mod rules;
 #[cfg(feature = "zenoh")]
+mod witness;
+#[cfg(feature = "zenoh")]
 mod zenoh_bus;
 pub use authority::{KeysWish, RoleKeys, host_of, keys_of};
 pub use credentials::{Credentials, RoleFile};
-pub use join::{Mode, TLS, ZenohConfig, join};
+pub use join::{Mode, SECURE, ZenohConfig, join};
 pub use memory::MemoryBus;
 #[cfg(feature = "zenoh")]
 pub use zenoh_bus::ZenohBus;

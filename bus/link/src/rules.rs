@@ -244,7 +244,7 @@ pub fn access_control() -> String {
 
 /// Comment at the head of [`router_config`].
 const ABOUT: &str = "\
-// A zenoh router (zenohd 1.x) between the processes of a deployment: mutual TLS, and what each role may do. Made by `socrates
+// A zenoh router (zenohd 1.x) between the processes of a deployment: mutual TLS over QUIC, and what each role may do. Made by `socrates
 // cluster keys`, which puts it into the folder `router` beside the certificates that it names:
 //
 //     cd router && zenohd -c router.json5
@@ -252,7 +252,7 @@ const ABOUT: &str = "\
 // The role of a link is the common name of its certificate. What no rule here allows is dropped without a word.
 ";
 
-/// The whole configuration of a router that is a program of its own, JSON5: mutual TLS with `ca.pem`, `cert.pem` and `key.pem` of the
+/// The whole configuration of a router that is a program of its own, JSON5: mutual TLS over QUIC with `ca.pem`, `cert.pem` and `key.pem` of the
 /// folder that it is started in, and [`access_control`].
 #[must_use]
 pub fn router_config() -> String {
@@ -260,12 +260,12 @@ pub fn router_config() -> String {
     format!(
         "{ABOUT}{{
   mode: \"router\",
-  listen: {{ endpoints: [\"tls/0.0.0.0:7447\"] }},
+  listen: {{ endpoints: [\"quic/0.0.0.0:7447\"] }},
   scouting: {{ multicast: {{ enabled: false }}, gossip: {{ enabled: false }} }},
   adminspace: {{ enabled: false }},
   transport: {{
     link: {{
-      protocols: [\"tls\"],
+      protocols: [\"quic\"],
       rx: {{ max_message_size: {MOST_BYTES} }},
       tls: {{
         enable_mtls: true,

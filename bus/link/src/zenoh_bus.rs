@@ -23,13 +23,15 @@ use crate::credentials::{Credentials, RoleFile};
 use crate::envelope::fits;
 use crate::error::LinkError;
 use crate::handshake;
-use crate::join::{Mode, TLS, ZenohConfig};
+use crate::join::{Mode, SECURE, ZenohConfig};
 use crate::keys::Namespace;
 use crate::mailbox::Mailbox;
 use crate::rules::{MOST_BYTES, access_control};
 
 /// Room of a served key and of a presence watch.
 const DEPTH: usize = 1024;
+/// A participant that is let in is let in by then; one that is not has a second look meanwhile.
+const AT_ONCE: Duration = Duration::from_secs(1);
 /// Longest time closing may take; on a lossy link the transport would wait 10 s.
 const CLOSE_LIMIT: Duration = Duration::from_secs(3);
 /// A peer that is silent for so long is gone, ms. Announced to the other side, so every participant sets it.
@@ -77,7 +79,7 @@ fn settings(of: &ZenohConfig) -> Result<Config, LinkError> {
 /// What is said about TLS: paths of files, never what is in them, because the library repeats its settings in errors.
 fn secured(of: &ZenohConfig, keys: &Credentials) -> Vec<(&'static str, String)> {
     let path = |which: RoleFile| format!("{:?}", keys.file(which).display().to_string());
-    let with_tls = |endpoints: &[String]| endpoints.iter().any(|one| one.starts_with(TLS));
+    let secure = |endpoints: &[String]| endpoints.iter().any(|one| one.starts_with(SECURE));
     let (certificate, key) = (path(RoleFile::Certificate), path(RoleFile::Key));
     let mut rows = vec![
         ("transport/link/tls/root_ca_certificate", path(RoleFile::Authority)),
@@ -85,16 +87,25 @@ fn secured(of: &ZenohConfig, keys: &Credentials) -> Vec<(&'static str, String)> 
         ("transport/link/tls/verify_name_on_connect", "true".to_owned()),
         ("transport/link/tls/close_link_on_expiration", "true".to_owned()),
     ];
-    if with_tls(&of.listen) {
+    if secure(&of.listen) {
         rows.push(("transport/link/tls/listen_certificate", certificate.clone()));
         rows.push(("transport/link/tls/listen_private_key", key.clone()));
         rows.push(("access_control", access_control()));
     }
-    if with_tls(&of.connect) {
+    if secure(&of.connect) {
         rows.push(("transport/link/tls/connect_certificate", certificate));
         rows.push(("transport/link/tls/connect_private_key", key));
     }
     rows
+}
+
+/// Ends when keys are refused, which waiting does not change, and never otherwise.
+async fn refusal(config: &ZenohConfig) -> LinkError {
+    tokio::time::sleep(AT_ONCE).await;
+    match handshake::refused(config).await {
+        Some(why @ LinkError::Keys { .. }) => why,
+        Some(_) | None => std::future::pending().await,
+    }
 }
 
 fn transport(what: &str, why: &str) -> LinkError {
@@ -124,12 +135,17 @@ impl ZenohBus {
         let namespace = Namespace::new(&config.namespace)?;
         config.check()?;
         let joined = settings(&config)?;
-        let session = match zenoh::open(joined).await {
+        let session = tokio::select! {
+            biased;
+            opened = async { zenoh::open(joined).await } => opened.map_err(|why| why.to_string()),
+            why = refusal(&config) => return Err(why),
+        };
+        let session = match session {
             Ok(session) => session,
             Err(why) => {
                 let what = format!("joining the bus (listen {:?}, connect {:?})", config.listen, config.connect);
                 let reason = handshake::refused(&config).await;
-                return Err(reason.unwrap_or_else(|| transport(&what, &why.to_string())));
+                return Err(reason.unwrap_or_else(|| transport(&what, &why)));
             }
         };
         Ok(Self { session, namespace, name: config.name, endings: Arc::default() })

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use socrates_kit::Stop;
 use socrates_link::rules::Role;
-use socrates_link::{Presence, TLS, keys};
+use socrates_link::{Presence, keys};
 use socrates_model::job::Stage;
 use tokio::sync::mpsc;
 
@@ -71,9 +71,6 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
         crew.add(role, report.clone(), usize::MAX)?;
     }
     let served: Vec<&str> = stages.iter().map(|stage| stage.name()).collect();
-    if options.connect.starts_with(TLS) {
-        talk.warn(process::TLS_FAULT);
-    }
     talk.line(&format!("working    {} for {}: {}", plural(count, "worker"), options.connect, served.join(", ")));
     let ended = tokio::select! {
         why = gave_up.recv() => why.map_or(Ok(()), Err),

@@ -1,4 +1,4 @@
-//! Keys of a deployment: `cluster keys` makes them, and every verb that joins the bus by TLS reads those of its role.
+//! Keys of a deployment: `cluster keys` makes them, and every verb that joins the bus with keys reads those of its role.
 
 use std::fs::Permissions;
 use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_link::rules::Role;
-use socrates_link::{Credentials, KeysWish, LinkError, TLS, keys_of, wall_ms};
+use socrates_link::{Credentials, KeysWish, LinkError, SECURE, keys_of, wall_ms};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -90,8 +90,8 @@ pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
     );
     let up = dir.join(Role::Orchestrator.name());
     let host = options.hosts.first().map_or("localhost", String::as_str);
-    talk.line(&format!("next       socrates cluster up --dir jobs --listen tls/0.0.0.0:7447 --keys {}", up.display()));
-    talk.line(&format!("then       socrates cluster work --connect tls/{host}:7447 --keys worker"));
+    talk.line(&format!("next       socrates cluster up --dir jobs --listen quic/0.0.0.0:7447 --keys {}", up.display()));
+    talk.line(&format!("then       socrates cluster work --connect quic/{host}:7447 --keys worker"));
     let folders: Vec<_> = keys.iter().map(|keys| dir.join(keys.role.name()).display().to_string()).collect();
     talk.result(&json!({ "folders": folders, "hosts": hosts, "days": options.days }));
     Ok(())
@@ -103,10 +103,10 @@ fn private_folder(folder: &Path) -> std::io::Result<()> {
     std::fs::set_permissions(folder, Permissions::from_mode(OWNER_FOLDER))
 }
 
-/// The keys of the configuration for an endpoint with TLS, of this role or the orchestrator's; none for other endpoints.
+/// The keys of the configuration for an endpoint that takes them, of this role or the orchestrator's; none for other endpoints.
 pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<Credentials>, Complaint> {
     let folder = config.text(SETTING);
-    if folder.is_empty() || !endpoint.starts_with(TLS) {
+    if folder.is_empty() || !endpoint.starts_with(SECURE) {
         return Ok(None);
     }
     let keys = Credentials::read(Path::new(&folder), wall_ms() / 1000)
@@ -189,7 +189,7 @@ mod tests {
             let keys = format!("{SETTING}={}", folder.path().join(role.name()).display());
             Config::load(None, std::iter::empty(), &[keys]).unwrap()
         };
-        let lab = "tls/lab-3:7447";
+        let lab = "quic/lab-3:7447";
         let why = of(&config(Role::Viewer), Role::Client, lab).unwrap_err();
         assert!(why.what.contains("`viewer`") && why.hint.contains("`client`"), "{why}");
         for role in [Role::Client, Role::Orchestrator] {

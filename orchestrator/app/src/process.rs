@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::rules::Role;
-use socrates_link::{Bus, Mode, TLS, ZenohConfig};
+use socrates_link::{Bus, Mode, SECURE, ZenohConfig};
 use socrates_model::job::Stage;
 pub use socrates_store::Durability;
 use socrates_store::StoreError;
@@ -45,8 +45,8 @@ pub struct WorkerOptions {
 pub struct OrchestratorOptions {
     /// Folder of the job store and the artifacts; on a local disk.
     pub dir: PathBuf,
-    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach has TLS and needs keys, such as
-    /// `tls/0.0.0.0:7447`, or needs `--insecure`.
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach takes keys, such as
+    /// `quic/0.0.0.0:7447`, or needs `--insecure`.
     pub listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
     /// returns any result. There is no password and no encryption.
@@ -62,10 +62,6 @@ pub struct OrchestratorOptions {
     /// No worker of before is alive: what they held is handed out again at once.
     pub alone: bool,
 }
-
-/// What is said where a process that stays speaks TLS.
-pub(crate) const TLS_FAULT: &str = "note       TLS of zenoh 1.10 has a known fault (eclipse-zenoh/zenoh issue 2557): a process that sends and receives much \
-                                   may crash. Nothing is lost; keep `cluster up` alive, see deploy/README.md";
 
 /// Version of the stages' code; results of another version are not reused.
 pub(crate) const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -152,8 +148,8 @@ async fn joined(
 
 /// Refuses to listen where other machines can reach it, unless that is meant.
 fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
-    // With TLS nobody comes in without keys.
-    if is_local(listen) || listen.starts_with(TLS) {
+    // Nobody comes in there without keys.
+    if is_local(listen) || listen.starts_with(SECURE) {
         return Ok(());
     }
     let open = format!(
@@ -166,7 +162,7 @@ fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
     }
     Err(Complaint::input(
         open,
-        "make keys with `socrates cluster keys` and listen on tls/0.0.0.0:7447 with --keys; or listen on tcp/127.0.0.1:7447 and let \
+        "make keys with `socrates cluster keys` and listen on quic/0.0.0.0:7447 with --keys; or listen on tcp/127.0.0.1:7447 and let \
          workers come through `ssh -L`, or say --insecure in a network that you trust",
     ))
 }
@@ -198,9 +194,6 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
                 let hint = "another port, or end the program that has it";
                 keys::told(why, &format!("cannot listen on `{listen}`"), hint)
             })?;
-            if listen.starts_with(TLS) {
-                talk.warn(TLS_FAULT);
-            }
             talk.warn(&format!("listening  {listen} · namespace {}", options.namespace));
             opened
         }
@@ -247,7 +240,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
     })
 }
 
-/// A client of a router, in this role: with TLS its keys have to be of it.
+/// A client of a router, in this role: where there are keys they have to be of it.
 pub(crate) async fn client(
     config: &Config,
     role: Role,
@@ -255,12 +248,15 @@ pub(crate) async fn client(
     namespace: &str,
     name: &str,
 ) -> Result<Arc<dyn Bus>, Complaint> {
-    if !config.text(keys::SETTING).is_empty() && !endpoint.starts_with(TLS) && !is_local(endpoint) {
+    if !config.text(keys::SETTING).is_empty() && !endpoint.starts_with(SECURE) && !is_local(endpoint) {
         let what = format!("`{endpoint}` goes to another machine in clear, although there are keys");
-        return Err(Complaint::input(what, "connect to an endpoint that begins with tls/, or without keys: --keys ''"));
+        return Err(Complaint::input(
+            what,
+            "connect to an endpoint that begins with quic/, or without keys: --keys ''",
+        ));
     }
     let keys = keys::of(config, role, endpoint)?;
-    if keys.is_none() && endpoint.starts_with(TLS) {
+    if keys.is_none() && endpoint.starts_with(SECURE) {
         let hint =
             format!("--keys names the folder of the role, such as keys/{role}; `socrates cluster keys` makes them");
         return Err(Complaint::input(format!("`{endpoint}` needs keys"), hint));
@@ -313,7 +309,7 @@ mod tests {
 
     #[test]
     fn only_this_machine_is_listened_to_unless_more_is_meant() {
-        reachable("tls/0.0.0.0:7447", false).unwrap();
+        reachable("quic/0.0.0.0:7447", false).unwrap();
         let near =
             ["tcp/127.0.0.1:7447", "tcp/127.8.9.1:1", "tcp/[::1]:7447", "tcp/localhost:0", "unixsock-stream//run/x"];
         for endpoint in near {

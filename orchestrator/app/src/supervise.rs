@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Bus, TLS, keys};
+use socrates_link::{Bus, SECURE, keys};
 use socrates_model::job::Stage;
 use tempfile::TempDir;
 use tokio::sync::mpsc;
@@ -135,7 +135,7 @@ pub(crate) fn names(stage: Stage, count: u32) -> Vec<String> {
 
 /// Endpoint and namespace of a folder whose run is being made, or of an endpoint given as it is.
 pub(crate) fn endpoint(what: &str) -> Option<(String, String)> {
-    if what.contains("/127.") || what.starts_with("tcp/") || what.starts_with(TLS) || what.starts_with("unixsock") {
+    if what.contains("/127.") || what.starts_with("tcp/") || what.starts_with(SECURE) || what.starts_with("unixsock") {
         let (endpoint, namespace) = what.split_once('@').unwrap_or((what, "main"));
         return Some((endpoint.to_owned(), namespace.to_owned()));
     }

@@ -8,7 +8,7 @@ use socrates_link::{Bus, LinkError, Overflow, Qos, ZenohBus, keys};
 use socrates_model::job::{MESSAGE_BYTES, Stage};
 
 use crate::deployment::{Deployment, text_of};
-use crate::promises::over_zenoh::free_port;
+use crate::promises::over_zenoh::free_udp_port;
 use crate::promises::{SOON, ask_until_served, guarded, until};
 
 const GUESTS: [Role; 4] = [Role::Worker, Role::Client, Role::Viewer, Role::Driver];
@@ -180,13 +180,13 @@ async fn nobody_plays_the_part_of_another() {
 
 /// A router that is a program of its own, from the shipped configuration.
 async fn shipped_router(deployment: &Deployment) -> (zenoh::Session, String) {
-    let (folder, endpoint) = (deployment.folder(Role::Router), format!("tls/127.0.0.1:{}", free_port()));
+    let (folder, endpoint) = (deployment.folder(Role::Router), format!("quic/127.0.0.1:{}", free_udp_port()));
     let mut text = std::fs::read_to_string(folder.join("router.json5")).unwrap();
     assert_eq!(text, router_config());
     for name in ["ca.pem", "cert.pem", "key.pem"] {
         text = text.replace(&format!("{name:?}"), &text_of(&folder.join(name)));
     }
-    let config = zenoh::Config::from_json5(&text.replace("tls/0.0.0.0:7447", &endpoint)).unwrap();
+    let config = zenoh::Config::from_json5(&text.replace("quic/0.0.0.0:7447", &endpoint)).unwrap();
     (zenoh::open(config).await.unwrap(), endpoint)
 }
 

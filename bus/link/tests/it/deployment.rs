@@ -8,7 +8,7 @@ use socrates_link::rules::Role;
 use socrates_link::{Credentials, KeysWish, Mode, ZenohBus, ZenohConfig, keys_of, wall_ms};
 use tempfile::TempDir;
 
-use crate::promises::over_zenoh::free_port;
+use crate::promises::over_zenoh::free_udp_port;
 
 /// Seconds of a day.
 pub(crate) const DAY_S: u64 = 24 * 3600;
@@ -46,7 +46,7 @@ impl Deployment {
 
     /// The router, with the orchestrator in it.
     pub(crate) async fn router(&self) -> (ZenohBus, String) {
-        let endpoint = format!("tls/127.0.0.1:{}", free_port());
+        let endpoint = format!("quic/127.0.0.1:{}", free_udp_port());
         let config = ZenohConfig::new(Mode::Router, "t", "orchestrator").listen(&endpoint);
         let config = config.credentials(Some(self.keys(Role::Orchestrator)));
         (ZenohBus::open(config).await.unwrap(), endpoint)

@@ -4,6 +4,8 @@
 #[cfg(feature = "zenoh")]
 mod access;
 #[cfg(feature = "zenoh")]
+mod both_ways;
+#[cfg(feature = "zenoh")]
 mod deployment;
 mod promises;
 #[cfg(feature = "zenoh")]

@@ -267,11 +267,15 @@ async fn memory_keeps_every_promise() {
 /// The same over zenoh, and what only a bus between processes can break.
 #[cfg(feature = "zenoh")]
 pub(crate) mod over_zenoh {
-    use std::net::TcpListener;
+    use std::net::{TcpListener, UdpSocket};
 
     use socrates_link::{Mode, ZenohBus, ZenohConfig};
 
     use super::*;
+
+    pub(crate) fn free_udp_port() -> u16 {
+        UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+    }
 
     pub(crate) fn free_port() -> u16 {
         TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()

@@ -7,7 +7,7 @@ use socrates_link::rules::Role;
 use socrates_link::{Bus as _, Credentials, KeysWish, LinkError, Mode, RoleFile, ZenohBus, ZenohConfig, keys};
 
 use crate::deployment::{DAY_S, Deployment, now_s, raw_client, text_of, write_private};
-use crate::promises::over_zenoh::free_port;
+use crate::promises::over_zenoh::{free_port, free_udp_port};
 use crate::promises::{SOON, guarded};
 
 /// Why somebody was not let in; bounded, or the watchdog barks.
@@ -36,7 +36,7 @@ async fn a_stranger_is_not_let_in_and_told_why() {
         assert!(why.contains("needs keys") && why.contains("--keys"), "without keys: {why}");
         let why = refused(theirs.guest_config(Role::Worker, &endpoint)).await;
         assert!(why.contains("of another deployment"), "keys of others: {why}");
-        let why = refused(plain(&endpoint.replace("tls/", "tcp/"))).await;
+        let why = refused(plain(&endpoint.replace("quic/", "tcp/"))).await;
         assert!(why.contains("wants keys") && why.contains(&endpoint), "in clear: {why}");
         let by_name = ours.guest_config(Role::Worker, &endpoint.replace("127.0.0.1", "localhost"));
         ZenohBus::open(by_name).await.unwrap().close().await;
@@ -76,11 +76,11 @@ async fn a_router_that_is_not_what_it_should_be_is_not_trusted() {
         // In clear, where keys were expected.
         let tcp = format!("tcp/127.0.0.1:{}", free_port());
         let router = ZenohBus::open(ZenohConfig::new(Mode::Router, "t", "r").listen(&tcp)).await.unwrap();
-        let why = refused(ours.guest_config(Role::Client, &tcp.replace("tcp/", "tls/"))).await;
-        assert!(why.contains("does not speak TLS"), "{why}");
+        let why = refused(ours.guest_config(Role::Client, &tcp.replace("tcp/", "quic/"))).await;
+        assert!(why.contains("does not speak QUIC"), "{why}");
         router.close().await;
         // A worker's certificate names no host: with it nobody can play the router.
-        let endpoint = format!("tls/127.0.0.1:{}", free_port());
+        let endpoint = format!("quic/127.0.0.1:{}", free_udp_port());
         let listening = ZenohConfig::new(Mode::Router, "t", "r").listen(&endpoint);
         let why = refused(listening.credentials(Some(ours.keys(Role::Worker)))).await;
         assert!(why.contains("nobody can listen") && why.contains("`worker`"), "{why}");
@@ -120,7 +120,7 @@ async fn without_keys_a_router_is_as_before() {
         assert_eq!(crate::promises::ask_until_served(&guest, keys::STATUS, &[]).await, [1]);
         answers.await.unwrap();
         // A router without keys cannot listen with TLS.
-        let why = refused(ZenohConfig::new(Mode::Router, "t", "r").listen("tls/127.0.0.1:0")).await;
+        let why = refused(ZenohConfig::new(Mode::Router, "t", "r").listen("quic/127.0.0.1:0")).await;
         assert!(why.contains("needs keys"), "{why}");
         guest.close().await;
         router.close().await;
@@ -193,7 +193,7 @@ fn keys_hold_from_the_day_before_they_are_made_until_their_last_day() {
 #[test]
 fn what_is_printed_of_a_participant_holds_no_secret() {
     let deployment = Deployment::new();
-    let config = deployment.guest_config(Role::Client, "tls/127.0.0.1:1");
+    let config = deployment.guest_config(Role::Client, "quic/127.0.0.1:1");
     let secret = std::fs::read_to_string(deployment.folder(Role::Client).join("key.pem")).unwrap();
     let line = secret.lines().nth(1).unwrap();
     assert!(line.len() > 40 && !format!("{config:?}").contains(line));

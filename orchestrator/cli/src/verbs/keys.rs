@@ -37,7 +37,7 @@ impl MakeKeys {
 /// Keys of the role that a process plays.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Keys {
-    /// Folder with the keys of a role, made by `socrates cluster keys`, for endpoints that begin with `tls/`; also `bus.keys` of the
+    /// Folder with the keys of a role, made by `socrates cluster keys`, for endpoints that begin with `quic/`; also `bus.keys` of the
     /// configuration, or SOCRATES_BUS__KEYS.
     #[arg(long = "keys", value_name = "FOLDER")]
     folder: Option<PathBuf>,

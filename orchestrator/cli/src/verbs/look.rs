@@ -12,7 +12,7 @@ use super::{Outcome, done};
 /// Arguments of `watch`.
 #[derive(Debug, Args)]
 pub(crate) struct Watch {
-    /// Its bundle folder, or a zenoh endpoint such as `tcp/127.0.0.1:7447` or `tls/lab-3:7447@main`.
+    /// Its bundle folder, or a zenoh endpoint such as `tcp/127.0.0.1:7447` or `quic/lab-3:7447@main`.
     what: String,
     /// Run name; default: the first that is announced.
     #[arg(long)]
