@@ -11,6 +11,7 @@ mod doors;
 mod evaluations;
 mod folders;
 mod judges;
+mod kept;
 mod keys;
 mod leaving;
 mod libraries;

@@ -9,6 +9,8 @@
 
 mod approach;
 
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::{Point, Vector};
 use crate::ids::{AgentId, HumanId, NodeId};
 use crate::location::Location;
@@ -32,7 +34,7 @@ const ASIDE: f64 = 0.5;
 const MOST: f64 = 5.0;
 
 /// The side of the robot's way that a person comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Side {
     /// Along the way, or nowhere: they stand.
     Along,
@@ -41,7 +43,7 @@ enum Side {
 }
 
 /// A person's part: what of them makes a difference, without numbers.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 struct Part {
     relation: Relation,
     role: String,
@@ -55,7 +57,7 @@ struct Part {
 }
 
 /// The kind of a scenario: all that makes a difference without a number. Scenarios of two kinds differ.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Kind {
     location: String,
     parts: Vec<Part>,
@@ -65,7 +67,7 @@ pub struct Kind {
 }
 
 /// What of a scenario is compared: taken once, however many it is compared with.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Likeness {
     /// Its kind.
     pub kind: Kind,
@@ -77,7 +79,7 @@ pub struct Likeness {
 
 /// When something is triggered, s, by what is said of it alone and by how the two come near to each other on their ways. A
 /// difference is one by both.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Time {
     said_s: f64,
     seen_s: f64,

@@ -1,5 +1,6 @@
 //! The page of a folder of bundles: every scenario with its verdict, picture and runs, to filter and to open.
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use socrates_model::report::Standing;
 use socrates_model::{ClauseRole, Location, Paths, Proposal, Recording, Report, Request};
@@ -12,18 +13,32 @@ use crate::template::{self, template};
 const TEMPLATE: &str = template!("web/batch.html");
 const SCRIPT: &str = include_str!("web/batch.js");
 
-/// So many scenarios have a small picture; more would make the page too heavy to open.
-const PICTURES: usize = 1000;
+/// Scenarios of one page: more would make it too heavy to open.
+const ON_A_PAGE: usize = 1000;
+/// File of the first page, and what stands before the number of the others.
+const FIRST: &str = "report.html";
+const OTHERS: &str = "report-";
 /// Tracks of so many agents are drawn in a small picture, the robot's among them.
 const TRACKS: usize = 16;
 /// A small track has a point whenever somebody went so far, drawing units.
 const STEP: f64 = 5.0;
 
+/// Where a bundle lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lies<'a> {
+    /// In this folder, whose page is led to.
+    Folder(&'a str),
+    /// In this file, packed.
+    File(&'a str),
+    /// Nowhere: it was not kept.
+    Nowhere,
+}
+
 /// One scenario of the folder.
 #[derive(Debug, Clone, Copy)]
 pub struct BatchEntry<'a> {
-    /// Its folder, relative to the page.
-    pub folder: &'a str,
+    /// Where its bundle lies, relative to the page.
+    pub lies: Lies<'a>,
     /// Its id.
     pub scenario: &'a str,
     /// What the user gave.
@@ -43,7 +58,7 @@ pub struct BatchEntry<'a> {
 }
 
 /// What the planners did over all scenarios, ready to be shown.
-#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Figures {
     /// Names of the columns.
     pub head: Vec<String>,
@@ -53,23 +68,30 @@ pub struct Figures {
     pub thresholds: String,
 }
 
-/// The page while it is being filled, one scenario after another.
+/// The page while it is being filled, one scenario after another; of many scenarios several pages that lead to each other.
 #[derive(Debug, Clone, Default)]
 pub struct BatchPage {
-    places: Places,
-    rows: Vec<Value>,
+    full: Vec<Part>,
+    last: Part,
     figures: Value,
 }
 
+/// What one page holds.
+#[derive(Debug, Clone, Default)]
+struct Part {
+    places: Places,
+    rows: Vec<Value>,
+}
+
 /// What the page tells of one scenario, made wherever its recording is at hand.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BatchRow {
     told: Value,
     picture: Option<Picture>,
 }
 
 /// A small picture, without the number of its place: the page numbers places.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Picture {
     focus: [f64; 4],
     tracks: Vec<Value>,
@@ -81,14 +103,22 @@ impl BatchRow {
     pub fn of(entry: &BatchEntry<'_>) -> Self {
         let first = entry.reports.first();
         let runs: Vec<Value> = entry.reports.iter().map(run_row).collect();
-        let told = json!({
-            "folder": entry.folder, "scenario": entry.scenario, "title": entry.proposal.title,
+        let mut told = json!({
+            "scenario": entry.scenario, "title": entry.proposal.title,
             "reading": entry.reading_line, "context": entry.request.social_context, "task": entry.request.task,
             "rough": entry.request.rough_scenario, "location": entry.location.name, "place": entry.proposal.place.name(),
             "pattern": entry.proposal.pattern, "humans": entry.proposal.humans.len(), "author": entry.proposal.author,
             "verdict": first.map_or("failed", |report| report.verdict.name()),
             "told": first.map_or("", |report| report.verdict_text.as_str()), "why": first.and_then(why), "runs": runs,
         });
+        let lies = match entry.lies {
+            Lies::Folder(folder) => Some(("folder", folder)),
+            Lies::File(file) => Some(("file", file)),
+            Lies::Nowhere => None,
+        };
+        if let (Some(members), Some((key, name))) = (told.as_object_mut(), lies) {
+            members.insert(key.to_owned(), name.into());
+        }
         Self { told, picture: entry.recording.map(|recording| picture(entry.location, entry.paths, recording)) }
     }
 }
@@ -96,21 +126,30 @@ impl BatchRow {
 impl BatchPage {
     /// Adds a scenario at a place; `repeats` is the earlier scenario of the page that it repeats.
     pub fn add(&mut self, row: BatchRow, location: &Location, repeats: Option<&str>) {
-        let picture = row.picture.filter(|_| self.rows.len() < PICTURES).map(|picture| {
-            json!({ "place": self.places.number(location), "focus": picture.focus, "tracks": picture.tracks })
+        let part = self.part();
+        let picture = row.picture.map(|picture| {
+            json!({ "place": part.places.number(location), "focus": picture.focus, "tracks": picture.tracks })
         });
         let mut told = row.told;
         if let Some(members) = told.as_object_mut() {
             members.insert("repeats".to_owned(), repeats.into());
             members.insert("picture".to_owned(), picture.into());
         }
-        self.rows.push(told);
+        part.rows.push(told);
+    }
+
+    /// The page that is being filled.
+    fn part(&mut self) -> &mut Part {
+        if self.last.rows.len() == ON_A_PAGE {
+            self.full.push(std::mem::take(&mut self.last));
+        }
+        &mut self.last
     }
 
     /// Adds a scenario of which there is no bundle, and why; `repeats` is the earlier one that failed in the same way.
     pub fn add_failed(&mut self, scenario: &str, why: &str, repeats: Option<&str>) {
         let row = json!({ "scenario": scenario, "repeats": repeats, "verdict": "failed", "told": why, "runs": [] });
-        self.rows.push(row);
+        self.part().rows.push(row);
     }
 
     /// Sets the figures over all scenarios.
@@ -126,26 +165,61 @@ impl BatchPage {
     /// Scenarios added so far.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.rows.len()
+        self.rows().count()
+    }
+
+    fn rows(&self) -> impl Iterator<Item = &Value> {
+        self.full.iter().chain([&self.last]).flat_map(|part| &part.rows)
     }
 
     /// Scenarios added so far that repeat no earlier one.
     #[must_use]
     pub fn distinct(&self) -> usize {
-        self.rows.iter().filter(|row| row.get("repeats").is_none_or(Value::is_null)).count()
+        self.rows().filter(|row| row.get("repeats").is_none_or(Value::is_null)).count()
     }
 
     /// Whether no scenario was added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.last.rows.is_empty()
     }
 
-    /// The page.
+    /// The pages with the names of their files, which lie in one folder; the first is `report.html`.
     #[must_use]
-    pub fn html(&self, title: &str) -> String {
-        let data = json!({ "rows": self.rows, "places": self.places.told(), "figures": self.figures });
-        template::page(TEMPLATE, SCRIPT, title, self.places.floors(), &data, Vec::new())
+    pub fn pages(&self, title: &str) -> Vec<(String, String)> {
+        let parts: Vec<&Part> = self.full.iter().chain([&self.last]).collect();
+        let mut from = 1;
+        let links: Vec<Value> = parts
+            .iter()
+            .enumerate()
+            .map(|(number, part)| {
+                let link =
+                    json!({ "href": Self::file(number), "from": from, "to": from + part.rows.len().saturating_sub(1) });
+                from += part.rows.len();
+                link
+            })
+            .collect();
+        let page = |(number, part): (usize, &&Part)| {
+            let mut data = json!({ "rows": part.rows, "places": part.places.told(), "figures": self.figures });
+            if let Some(members) = data.as_object_mut().filter(|_| parts.len() > 1) {
+                members.insert("parts".to_owned(), json!({ "links": links, "here": number, "all": self.shares() }));
+            }
+            (Self::file(number), template::page(TEMPLATE, SCRIPT, title, part.places.floors(), &data, Vec::new()))
+        };
+        parts.iter().enumerate().map(page).collect()
+    }
+
+    /// Name of the file of a page, the first being 0.
+    #[must_use]
+    pub fn file(number: usize) -> String {
+        if number == 0 { FIRST.to_owned() } else { format!("{OTHERS}{}.html", number + 1) }
+    }
+
+    /// How many scenarios there are on all pages, how many of them differ, and how many of those were realised.
+    fn shares(&self) -> Value {
+        let distinct = || self.rows().filter(|row| row.get("repeats").is_none_or(Value::is_null));
+        let realised = distinct().filter(|row| row.get("verdict").is_some_and(|verdict| verdict == "realised")).count();
+        json!({ "scenarios": self.len(), "distinct": distinct().count(), "realised": realised })
     }
 }
 
@@ -207,7 +281,7 @@ mod tests {
         let mut page = BatchPage::default();
         for _ in 0..count {
             let row = BatchRow::of(&BatchEntry {
-                folder: text,
+                lies: Lies::Folder(text),
                 scenario: text,
                 request: &request,
                 reading_line: text,
@@ -220,7 +294,12 @@ mod tests {
             let repeats = (page.len() > 1).then_some(text);
             page.add(row, &location, repeats);
         }
-        page.html(text)
+        html(&page, text)
+    }
+
+    /// The first page.
+    fn html(page: &BatchPage, title: &str) -> String {
+        page.pages(title).remove(0).1
     }
 
     fn data(html: &str) -> Value {
@@ -265,10 +344,38 @@ mod tests {
     }
 
     #[test]
-    fn a_large_folder_has_a_page_without_pictures_for_the_rest() {
-        let html = page("hall", PICTURES + 5, 0);
-        let rows = data(&html)["rows"].as_array().unwrap().clone();
-        assert!(rows[PICTURES - 1]["picture"].is_object() && rows[PICTURES]["picture"].is_null());
+    fn a_large_folder_has_several_pages_that_lead_to_each_other() {
+        let (request, _, proposal, paths) = papers("hall");
+        let (recording, location) = (walk(1), hall("hall"));
+        let reports = [report(&recording, "hall")];
+        let row = BatchRow::of(&BatchEntry {
+            lies: Lies::File("hall.tar.zst"),
+            scenario: "hall",
+            request: &request,
+            reading_line: "hall",
+            location: &location,
+            proposal: &proposal,
+            paths: &paths,
+            reports: &reports,
+            recording: Some(&recording),
+        });
+        let mut all = BatchPage::default();
+        for _ in 0..2 * ON_A_PAGE + 5 {
+            all.add(row.clone(), &location, None);
+        }
+        let pages = all.pages("hall");
+        let names: Vec<&str> = pages.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["report.html", "report-2.html", "report-3.html"]);
+        let told: Vec<Value> = pages.iter().map(|(_, html)| data(html)).collect();
+        let counts: Vec<usize> = told.iter().map(|data| data["rows"].as_array().unwrap().len()).collect();
+        assert_eq!(counts, [ON_A_PAGE, ON_A_PAGE, 5]);
+        assert_eq!(told[2]["parts"]["links"][1], json!({ "href": "report-2.html", "from": 1001, "to": 2000 }));
+        assert_eq!(told[2]["parts"]["here"], 2);
+        assert_eq!(told[0]["parts"]["all"], json!({ "scenarios": 2005, "distinct": 2005, "realised": 2005 }));
+        assert!(
+            told.iter().all(|data| data["rows"][0]["picture"].is_object() && data["rows"][0]["file"] == "hall.tar.zst")
+        );
+        assert!(data(&page("hall", 3, 1))["parts"].is_null(), "one page alone leads nowhere");
     }
 
     #[test]
@@ -280,19 +387,19 @@ mod tests {
             thresholds: "standard-1".into(),
         };
         page.tell(figures);
-        let html = page.html("one");
-        assert_eq!(html.matches("</script>").count(), 2);
-        assert_eq!(data(&html)["figures"]["thresholds"], "standard-1");
+        let told = html(&page, "one");
+        assert_eq!(told.matches("</script>").count(), 2);
+        assert_eq!(data(&told)["figures"]["thresholds"], "standard-1");
         page.tell_none("thresholds differ");
-        assert_eq!(data(&page.html("one"))["figures"]["why"], "thresholds differ");
+        assert_eq!(data(&html(&page, "one"))["figures"]["why"], "thresholds differ");
     }
 
     #[test]
     fn an_empty_folder_and_a_failed_scenario_have_a_page() {
         let mut page = BatchPage::default();
-        assert!(page.is_empty() && page.html("none").contains("\"rows\":[]"));
+        assert!(page.is_empty() && html(&page, "none").contains("\"rows\":[]"));
         page.add_failed("odd-1", "no author", None);
         assert_eq!(page.len(), 1);
-        assert!(page.html("one").contains("no author"));
+        assert!(html(&page, "one").contains("no author"));
     }
 }

@@ -1,11 +1,11 @@
 //! The page of a folder of bundles, filled from what lies in it.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_draw::{BatchEntry, BatchPage, BatchRow};
+use socrates_draw::{BatchEntry, BatchPage, BatchRow, Lies};
 use socrates_model::{Likeness, Location, Report, ScenarioId, Verdict};
 use socrates_scoring::Pool;
 
@@ -13,6 +13,8 @@ use crate::batch_stats;
 use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
 use crate::index::{self, Index, Scenario};
+use crate::keep::{Form, Keep};
+use crate::kept::{self, Kept, Lines};
 use crate::layout;
 use crate::library_index;
 use crate::output::Printer;
@@ -31,7 +33,7 @@ pub(crate) struct Found {
     pub(crate) figures: Result<Pool, Complaint>,
 }
 
-/// Names of the folders right below this one that hold a finished bundle, in order.
+/// Names of the finished bundles right below this folder, in order, without the ending of those that are packed.
 pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
     let entries = std::fs::read_dir(root).map_err(|why| {
         Complaint::input(
@@ -39,12 +41,33 @@ pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
             "name a bundle folder, or a folder that holds bundles",
         )
     })?;
-    let names: BTreeSet<String> = entries
-        .filter_map(Result::ok)
-        .filter(|entry| entry.path().join(layout::MANIFEST.path).is_file())
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
+    let name = |entry: std::fs::DirEntry| {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if entry.path().join(layout::MANIFEST.path).is_file() {
+            return Some(name);
+        }
+        name.strip_suffix(bundle::PACKED).filter(|_| entry.path().is_file()).map(str::to_owned)
+    };
+    let names: BTreeSet<String> = entries.filter_map(Result::ok).filter_map(name).collect();
     Ok(names.into_iter().collect())
+}
+
+/// The form of the bundle of this name in a folder.
+pub(crate) fn form(root: &Path, name: &str) -> Form {
+    match (root.join(name).is_dir(), bundle::archive(&root.join(name))) {
+        (true, _) => Form::Folder,
+        (false, Some(_)) => Form::Packed,
+        (false, None) => Form::Nothing,
+    }
+}
+
+/// Where a bundle of this name and form lies, from the library; empty where it was not kept.
+pub(crate) fn lies(name: &str, form: Form) -> String {
+    match form {
+        Form::Folder => name.to_owned(),
+        Form::Packed => format!("{name}{}", bundle::PACKED),
+        Form::Nothing => String::new(),
+    }
 }
 
 /// What page, table and figures of a folder need of one bundle: all that is left of it once it is written or read.
@@ -58,21 +81,28 @@ pub(crate) struct Card {
     location: Arc<Location>,
     row: BatchRow,
     runs: index::Rows,
+    form: Form,
 }
 
 impl Card {
-    /// The card of a bundle in a folder of this name, with the reports of all its runs and the recording of the first.
+    /// The card of a bundle of this name and form, with the reports of all its runs and the recording of the first.
     pub(crate) fn of(
         bundle: &Bundle,
         location: Arc<Location>,
         name: &str,
+        form: Form,
         reports: &[Report],
     ) -> Result<Self, Complaint> {
+        let path = lies(name, form);
         // Folders are unique where ids need not be.
         let id = ScenarioId::new(name).or_else(|_| ScenarioId::new(&bundle.manifest.scenario));
         let id = id.map_err(|bad| Complaint::input(bad.to_string(), "rename the folder"))?;
         let row = BatchRow::of(&BatchEntry {
-            folder: name,
+            lies: match form {
+                Form::Folder => Lies::Folder(&path),
+                Form::Packed => Lies::File(&path),
+                Form::Nothing => Lies::Nowhere,
+            },
             scenario: &bundle.manifest.scenario,
             request: &bundle.request,
             reading_line: &socrates_offline::summary(&bundle.reading),
@@ -82,77 +112,162 @@ impl Card {
             reports,
             recording: bundle.runs.first().map(|(recording, _)| recording),
         });
-        let scenario = Scenario { request: bundle.manifest.request_name(), location: &location.name, path: name };
+        let scenario = Scenario { request: bundle.manifest.request_name(), location: &location.name, path: &path };
         let runs = index::Rows::of(scenario, reports, &bundle.manifest.failed);
         let likeness = Likeness::of(&bundle.proposal, &bundle.paths, &location);
-        Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs })
+        Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs, form })
     }
 
-    /// The card of a bundle that was just written for a scenario.
-    pub(crate) fn written(bundle: &Bundle, location: &Arc<Location>, id: &ScenarioId) -> Result<Self, Complaint> {
+    /// The card of a bundle that was just made for a scenario. Where the bundle is not kept, its line is written.
+    pub(crate) fn written(
+        bundle: &Bundle,
+        location: &Arc<Location>,
+        id: &ScenarioId,
+        keep: Keep,
+        lines: &Lines,
+    ) -> Result<Self, Complaint> {
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
-        Self::of(bundle, Arc::clone(location), id.as_str(), &reports)
+        let form = keep.form(bundle.manifest.verdict);
+        let card = Self::of(bundle, Arc::clone(location), id.as_str(), form, &reports)?;
+        if form == Form::Nothing {
+            let told = (card.likeness.clone(), card.row.clone(), card.runs.clone());
+            lines.put(&Kept::new(card.id.clone(), card.verdict, location, told, reports), location)?;
+        }
+        Ok(card)
     }
 
-    /// The card of a bundle that lies in a folder of this name.
+    /// The card of a scenario whose bundle was not kept.
+    pub(crate) fn kept(kept: Kept, location: Arc<Location>) -> Self {
+        let Kept { scenario: id, verdict, likeness, row, runs, .. } = kept;
+        Self { verdict, likeness, id, location, row, runs, form: Form::Nothing }
+    }
+
+    /// Where its bundle lies, from the library; empty where it was not kept.
+    pub(crate) fn lies(&self) -> String {
+        lies(self.id.as_str(), self.form)
+    }
+
+    /// The card of a bundle of this name.
     pub(crate) fn read(root: &Path, name: &str) -> Result<Self, Complaint> {
         let dir = root.join(name);
         // One recording at a time: a library is larger than the memory of a laptop.
         let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
         let reports = bundle::reports(&dir, &bundle.manifest)?;
-        Self::of(&bundle, Arc::new(bundle.location.clone()), name, &reports)
+        Self::of(&bundle, Arc::new(bundle.location.clone()), name, form(root, name), &reports)
+    }
+}
+
+/// What a folder of bundles holds, in the order in which it is told.
+struct Holds {
+    /// Scenarios with a bundle, or whose bundles the library did not keep.
+    made: Vec<Held>,
+    /// Scenarios of the list that have none.
+    failed: Vec<library_index::Row>,
+    /// What a library lists was compared when it was made; what else lies in its folder is compared when it is told.
+    repeated: BTreeMap<String, Option<ScenarioId>>,
+}
+
+/// A scenario that was made.
+struct Held {
+    name: String,
+    /// Whether its bundle was kept.
+    bundled: bool,
+}
+
+impl Holds {
+    fn of(root: &Path) -> Result<Self, Complaint> {
+        let found: BTreeSet<String> = bundles(root)?.into_iter().collect();
+        let kept = kept::names(root)?;
+        let mut holds = Self { made: Vec::new(), failed: Vec::new(), repeated: BTreeMap::new() };
+        for row in library_index::read(root).into_iter().flat_map(|library| library.scenarios) {
+            let name = row.scenario.to_string();
+            let bundled = found.contains(&name);
+            if bundled || kept.contains(&name) {
+                holds.repeated.insert(name.clone(), row.repeats);
+                holds.made.push(Held { name, bundled });
+            } else {
+                holds.failed.push(row);
+            }
+        }
+        let others = found.into_iter().filter(|name| !holds.repeated.contains_key(name));
+        let others: Vec<Held> = others.map(|name| Held { name, bundled: true }).collect();
+        holds.made.extend(others);
+        if holds.made.is_empty() && holds.failed.is_empty() { Err(none(root)) } else { Ok(holds) }
+    }
+
+    /// The earlier scenario that one repeats.
+    fn earlier(&self, name: &str, card: &Card, repeats: &mut library_index::Repeats) -> Option<ScenarioId> {
+        match self.repeated.get(name) {
+            Some(listed) => repeats.of_listed(&card.id, card.likeness.clone(), listed.as_ref(), |earlier| {
+                self.repeated.contains_key(earlier.as_str())
+            }),
+            None => repeats.of(&card.id, card.likeness.clone()),
+        }
+    }
+}
+
+/// Cards and reports of a folder, one scenario after another in the order of its list.
+struct Source<'a> {
+    root: &'a Path,
+    /// Cards that are at hand.
+    cards: BTreeMap<String, Card>,
+    /// Scenarios without bundles, from the first to the last.
+    kept: Option<kept::Reader>,
+}
+
+impl Source<'_> {
+    /// The card of a scenario, with its reports where they come with it.
+    fn next(&mut self, held: &Held) -> Result<(Card, Option<Vec<Report>>), Complaint> {
+        let name = &held.name;
+        if held.bundled {
+            let card = self.cards.remove(name).map_or_else(|| Card::read(self.root, name), Ok)?;
+            return Ok((card, None));
+        }
+        let reader = match &mut self.kept {
+            Some(reader) => reader,
+            none => none.insert(kept::Reader::open(self.root)?),
+        };
+        let (mut kept, location) =
+            reader.next()?.filter(|(kept, _)| kept.scenario.as_str() == name).ok_or_else(|| {
+                let what = format!("`{}` does not hold `{name}` in its place", self.root.join(kept::FILE).display());
+                Complaint::input(what, "list and file are of two libraries: make the library again in an empty folder")
+            })?;
+        let reports = std::mem::take(&mut kept.reports);
+        Ok((Card::kept(kept, location), Some(reports)))
     }
 }
 
 /// Writes `report.html`, `index.csv` and `planners.csv` into a folder of bundles: those its library lists first, in their order,
 /// then the others. Bundles whose cards are not at hand are read.
-pub(crate) fn write(talk: &Printer, root: &Path, mut cards: BTreeMap<String, Card>) -> Result<Found, Complaint> {
-    let listed = library_index::read(root);
-    let mut names: Vec<String> = Vec::new();
-    let mut failed: Vec<library_index::Row> = Vec::new();
-    // What a library lists was compared when it was made; what else lies in its folder is compared now.
-    let mut repeated: BTreeMap<String, Option<ScenarioId>> = BTreeMap::new();
-    let found = bundles(root)?;
-    for row in listed.into_iter().flat_map(|library| library.scenarios) {
-        let name = row.scenario.to_string();
-        if found.contains(&name) {
-            repeated.insert(name.clone(), row.repeats);
-            names.push(name);
-        } else {
-            failed.push(row);
-        }
-    }
-    let known: BTreeSet<String> = names.iter().cloned().collect();
-    names.extend(found.into_iter().filter(|name| !known.contains(name)));
-    if names.is_empty() && failed.is_empty() {
-        return Err(none(root));
-    }
+pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) -> Result<Found, Complaint> {
+    let holds = Holds::of(root)?;
+    let mut source = Source { root, cards, kept: None };
     let (mut page, mut index, mut repeats) =
         (BatchPage::default(), Index::default(), library_index::Repeats::default());
     let mut left_out = Vec::new();
     let mut reports = Vec::new();
-    let mut progress = Progress::new(*talk, "reading", names.len());
-    for (done, name) in names.into_iter().enumerate() {
+    let mut progress = Progress::new(*talk, "reading", holds.made.len());
+    for (done, held) in holds.made.iter().enumerate() {
         progress.at(done, "");
-        let card = cards.remove(&name).map_or_else(|| Card::read(root, &name), Ok);
-        let repeat = |card: &Card, repeats: &mut library_index::Repeats| match repeated.get(&name) {
-            Some(listed) => repeats.of_listed(&card.id, card.likeness.clone(), listed.as_ref(), |earlier| {
-                repeated.contains_key(earlier.as_str())
-            }),
-            None => repeats.of(&card.id, card.likeness.clone()),
-        };
-        let added = card.and_then(|card| {
-            let earlier = repeat(&card, &mut repeats);
-            add(&mut page, &mut index, earlier.as_ref(), card, root, &name)
+        let name = &held.name;
+        let added = source.next(held).and_then(|(card, told)| {
+            let earlier = holds.earlier(name, &card, &mut repeats);
+            add(
+                &mut page,
+                &mut index,
+                earlier.as_ref(),
+                card,
+                told.map_or_else(|| Reports::In(root.join(name)), Reports::Here),
+            )
         });
         match added {
             // What repeats another scenario is no evidence of its own.
-            Ok(Some(found)) => reports.push((name, found)),
+            Ok(Some(found)) => reports.push((name.clone(), found)),
             Ok(None) => {}
             Err(why) => {
-                page.add_failed(&name, &why.what, None);
-                index.add_failed(Scenario { request: "", location: "", path: &name }, &why.what, false);
-                left_out.push((name, why.what));
+                page.add_failed(name, &why.what, None);
+                index.add_failed(Scenario { request: "", location: "", path: name }, &why.what, false);
+                left_out.push((name.clone(), why.what));
             }
         }
     }
@@ -169,7 +284,7 @@ pub(crate) fn write(talk: &Printer, root: &Path, mut cards: BTreeMap<String, Car
             drop(std::fs::remove_file(root.join(batch_stats::FILE)));
         }
     }
-    for row in &failed {
+    for row in &holds.failed {
         let why = if row.reason.is_empty() { "no bundle could be made" } else { &row.reason };
         let earlier = row.repeats.as_ref().map(ScenarioId::as_str);
         page.add_failed(row.scenario.as_str(), why, earlier);
@@ -177,8 +292,14 @@ pub(crate) fn write(talk: &Printer, root: &Path, mut cards: BTreeMap<String, Car
     }
     index.write(root)?;
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
-    let html = page.html(&title.unwrap_or_else(|| "Scenarios".to_owned()));
-    crate::files::write(&root.join(layout::PAGE.path), html.as_bytes())?;
+    let pages = page.pages(&title.unwrap_or_else(|| "Scenarios".to_owned()));
+    for (name, html) in &pages {
+        crate::files::write(&root.join(name), html.as_bytes())?;
+    }
+    // Pages of an earlier time, when there were more scenarios, would be led to by nobody.
+    (pages.len()..)
+        .take_while(|number| std::fs::remove_file(root.join(BatchPage::file(*number))).is_ok())
+        .for_each(drop);
     Ok(Found { rows: page.len(), distinct: page.distinct(), left_out, figures })
 }
 
@@ -209,25 +330,39 @@ pub(crate) fn report(talk: &Printer, root: &Path) -> Result<(), Complaint> {
     found.figures.map(|_| ())
 }
 
-/// Adds a bundle to page and table and hands back its reports; none where it repeats an earlier one.
+/// Reports of a scenario.
+enum Reports {
+    /// At hand.
+    Here(Vec<Report>),
+    /// In the bundle at this path.
+    In(PathBuf),
+}
+
+/// Adds a scenario to page and table and hands back its reports; none where it repeats an earlier one.
 fn add(
     page: &mut BatchPage,
     index: &mut Index,
     earlier: Option<&ScenarioId>,
     card: Card,
-    root: &Path,
-    name: &str,
+    reports: Reports,
 ) -> Result<Option<Vec<Report>>, Complaint> {
     index.add(card.runs, earlier.is_some());
     page.add(card.row, &card.location, earlier.map(ScenarioId::as_str));
-    if earlier.is_some() {
-        return Ok(None);
+    match reports {
+        _ if earlier.is_some() => Ok(None),
+        Reports::Here(reports) => Ok(Some(reports)),
+        Reports::In(bundle) => bundle::reports_in(&bundle).map(Some),
     }
-    bundle::reports_in(&root.join(name)).map(Some)
 }
 
 /// What is said of a folder without bundles.
 pub(crate) fn none(dir: &Path) -> Complaint {
+    if dir.join(kept::FILE).is_file() {
+        return Complaint::input(
+            format!("`{}` keeps no bundles, and this needs them", dir.display()),
+            "make the library again with `--keep packed`, or in an empty folder the scenarios that are needed",
+        );
+    }
     Complaint::input(
         format!("`{}` is no bundle and holds none", dir.display()),
         "name the folder that `socrates run` printed after `look`",

@@ -6,13 +6,15 @@
 
 mod beside;
 mod collect;
+mod files;
 mod page;
 mod read;
 mod whole;
 
+pub(crate) use files::{PACKED, archive, unpack_beside};
 pub(crate) use page::page;
-pub(crate) use read::{changed, commands, is_bundle, manifest, read, read_some, reports, reports_in};
-pub(crate) use whole::{copy, damaged, whole};
+pub(crate) use read::{changed, commands, file, is_bundle, manifest, read, read_some, reports, reports_in};
+pub(crate) use whole::{copy, damaged, moved, whole};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,6 +34,7 @@ use self::beside::Beside;
 use self::collect::{Judged, Made, MadeRun, string};
 use crate::exit::Complaint;
 use crate::history::PastJob;
+use crate::keep::{Form, Keep};
 use crate::layout::{self, Sheet};
 use crate::prepare::Prepared;
 
@@ -156,7 +159,7 @@ pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
     Digest::of(text.to_string().as_bytes())
 }
 
-/// Whether the bundle of this wish lies in a folder.
+/// Whether the bundle of this wish lies in a folder, or packed beside where the folder would be.
 pub(crate) fn lies_in(dir: &Path, prepared: &Prepared, seed: u64) -> bool {
     manifest(dir).is_some_and(|manifest| manifest.wish == wish(prepared, seed))
 }
@@ -176,13 +179,20 @@ pub(crate) struct Past<'a> {
     pub(crate) work: &'a Path,
     /// Whether it is the only one: then its picture is painted by a thread of its own. Of many, each has a thread anyway.
     pub(crate) alone: bool,
+    /// What is kept of it.
+    pub(crate) keep: Keep,
 }
 
-/// Writes the bundle of a finished scenario. The folder is there whole or, whatever happens on the way, not finished.
+/// Writes the bundle of a finished scenario in the form in which it is kept. It is there whole or, whatever happens on the way, not
+/// finished.
 pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
     let beside = Beside::new(past.work, past.status.id.as_str())?;
     let bundle = written(&beside.0, dir, prepared, seed, past)?;
-    beside.appear(dir)?;
+    match past.keep.form(bundle.manifest.verdict) {
+        Form::Folder => beside.appear(dir)?,
+        Form::Packed => beside.appear_packed(dir)?,
+        Form::Nothing => {}
+    }
     Ok(bundle)
 }
 

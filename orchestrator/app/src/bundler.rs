@@ -22,6 +22,8 @@ use crate::batch::Card;
 use crate::bundle;
 use crate::conclude::Finished;
 use crate::exit::Complaint;
+use crate::keep::Keep;
+use crate::kept::Lines;
 use crate::output::Printer;
 use crate::prepare::Prepared;
 use crate::progress::Progress;
@@ -62,6 +64,7 @@ pub(crate) struct Bundler {
 struct Shared {
     root: PathBuf,
     work: PathBuf,
+    keep: Keep,
     orders: BTreeMap<ScenarioId, Order>,
     line: Mutex<Line>,
     /// For the threads: something waits, or the line is closed.
@@ -79,8 +82,14 @@ struct Line {
 }
 
 impl Bundler {
-    /// Starts as many threads as the machine has cores. Bundles go into folders of `root` that are called like their scenarios.
-    pub(crate) fn start(root: &Path, work: &Path, wanted: &[Wanted<'_>], prepared: &[Arc<Prepared>]) -> Self {
+    /// Starts as many threads as the machine has cores. Bundles that are kept go into `root` and are called like their scenarios.
+    pub(crate) fn start(
+        root: &Path,
+        work: &Path,
+        keep: Keep,
+        wanted: &[Wanted<'_>],
+        prepared: &[Arc<Prepared>],
+    ) -> Self {
         let known: Vec<(&Arc<Prepared>, Arc<Location>)> =
             prepared.iter().map(|one| (one, Arc::new(one.location.clone()))).collect();
         let order = |want: &Wanted<'_>| {
@@ -91,6 +100,7 @@ impl Bundler {
         let shared = Arc::new(Shared {
             root: root.to_path_buf(),
             work: work.to_path_buf(),
+            keep,
             orders: wanted.iter().filter_map(order).collect(),
             line: Mutex::default(),
             news: Condvar::new(),
@@ -199,7 +209,7 @@ impl Shared {
         }
     }
 
-    /// The bundle of one scenario, written unless it lies there.
+    /// The bundle of one scenario, or its line where no bundle is kept, written unless it lies there.
     fn bundle(&self, id: &ScenarioId, reader: &mut Option<Reader>) -> Bundled {
         let stranger = || Complaint::resumes(format!("the job store holds `{id}`, which nobody asked for"));
         let Order { seed, prepared, location } = self.orders.get(id).ok_or_else(stranger)?;
@@ -207,11 +217,16 @@ impl Shared {
         if bundle::lies_in(&dir, prepared, *seed) {
             return Card::read(&self.root, id.as_str());
         }
+        let lines = Lines::of(&self.work);
+        if let Some((kept, _)) = lines.get(id) {
+            return Ok(Card::kept(kept, Arc::clone(location)));
+        }
         if reader.is_none() {
             *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
         }
         let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
-        let finished = Finished { dir: &dir, work: &self.work, id, prepared, seed: *seed, alone: false };
-        Card::written(&finished.by_store(reader.as_ref().ok_or_else(gone)?)?, location, id)
+        let (work, keep) = (&self.work, self.keep);
+        let finished = Finished { dir: &dir, work, id, prepared, seed: *seed, alone: false, keep };
+        Card::written(&finished.by_store(reader.as_ref().ok_or_else(gone)?)?, location, id, keep, &lines)
     }
 }

@@ -44,8 +44,8 @@ pub fn cite(talk: &Printer, dir: &Path) -> Result<(), Complaint> {
 
 /// The build id of the program that made the bundle, as its provenance tells it.
 fn program(dir: &Path) -> Option<String> {
-    let text = std::fs::read_to_string(dir.join(crate::layout::PROVENANCE.path)).ok()?;
-    let provenance: serde_json::Value = serde_json::from_str(&text).ok()?;
+    let text = bundle::file(dir, crate::layout::PROVENANCE.path).ok()?;
+    let provenance: serde_json::Value = serde_json::from_slice(&text).ok()?;
     provenance.get("program")?.as_str().map(str::to_owned)
 }
 

@@ -24,6 +24,8 @@ use crate::conclude::Finished;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
+use crate::keep::Keep;
+use crate::kept::Lines;
 use crate::library_index::Library;
 use crate::many::{self, Ended};
 use crate::order::Order;
@@ -46,6 +48,8 @@ pub struct CollectOptions {
     pub batch: Option<String>,
     /// Folder of the library.
     pub out: PathBuf,
+    /// Which bundles are kept; none decides by the number of scenarios.
+    pub keep: Option<Keep>,
 }
 
 /// Writes the bundles of a batch that are done and not in the folder yet, and its list, page and tables.
@@ -56,7 +60,8 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
     let bus = process::client(config, Role::Client, &options.connect, &options.namespace, "collect").await?;
     let ends = of_batch(calls::ends(bus.as_ref()).await?, options.batch.as_deref())?;
     let Some(first) = ends.first() else { return Err(empty(&options.connect)) };
-    let known = Arc::new(Known { bus: Arc::clone(&bus), config: config.clone(), orders: Mutex::default() });
+    let keep = options.keep.unwrap_or_else(|| Keep::of(ends.len()));
+    let known = Arc::new(Known { bus: Arc::clone(&bus), config: config.clone(), keep, orders: Mutex::default() });
     let library = Known::library(&known, first).await?;
     let done: Vec<PastEnd> = ends.iter().filter(|end| end.end.is_some()).cloned().collect();
     talk.line(&format!("batch      `{}` · {} of {} done", first.batch, done.len(), plural(ends.len(), "scenario")));
@@ -64,10 +69,11 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
         Place::Finished(root) | Place::New(root) => place::told(talk, &options.out, root),
     };
     let work = place::claim(&root, library)?;
+    Lines::of(&work).adopt(&root)?;
     let hold = Hold::take(&work)?;
     let made = bundles(talk, &known, &done, &root, &work, &hold).await?;
     bus.close().await;
-    many::write(talk, &root, Library::new(library, None, ends.len(), known.readings()), made)?;
+    many::write(talk, &root, &work, Library::new(library, None, ends.len(), known.readings()), made)?;
     drop(std::fs::remove_dir_all(&work));
     let code = many::finish(talk, Require::Any, &root, &[])?;
     if done.len() < ends.len() {
@@ -141,6 +147,7 @@ async fn bundles(
 struct Known {
     bus: Arc<dyn Bus>,
     config: Config,
+    keep: Keep,
     orders: Mutex<BTreeMap<Digest, Request>>,
 }
 
@@ -190,9 +197,14 @@ impl Known {
             if bundle::lies_in(&dir, prepared, spec.seed) {
                 return Ok(Ended { what: Ok(Card::read(&root, id.as_str())?), scenario: id, request: name });
             }
-            let finished = Finished { dir: &dir, work: &work, id: &id, prepared, seed: spec.seed, alone: false };
+            let (lines, keep) = (Lines::of(&work), known.keep);
+            if let Some((kept, _)) = lines.get(&id) {
+                let card = Card::kept(kept, Arc::clone(&request.location));
+                return Ok(Ended { what: Ok(card), scenario: id, request: name });
+            }
+            let finished = Finished { dir: &dir, work: &work, id: &id, prepared, seed: spec.seed, alone: false, keep };
             let written = finished.by_rows(rows, &fetch);
-            let what = written.and_then(|bundle| Card::written(&bundle, &request.location, &id));
+            let what = written.and_then(|bundle| Card::written(&bundle, &request.location, &id, keep, &lines));
             match what {
                 // The cluster, the disk or this program, not the scenario: nothing is listed as failed that is not.
                 Err(why) if matches!(why.code, Code::Ours | Code::Input) => Err(why),

@@ -10,6 +10,7 @@ use socrates_store::Reader;
 use crate::bundle::{self, Bundle, Fetch, Past};
 use crate::exit::{Code, Complaint};
 use crate::history::History;
+use crate::keep::Keep;
 use crate::prepare::Prepared;
 use crate::work;
 
@@ -28,6 +29,8 @@ pub(crate) struct Finished<'a> {
     pub(crate) seed: u64,
     /// Whether no other is written meanwhile.
     pub(crate) alone: bool,
+    /// What is kept of it.
+    pub(crate) keep: Keep,
 }
 
 impl Finished<'_> {
@@ -40,11 +43,11 @@ impl Finished<'_> {
 
     /// The bundle, written from these rows, with artifacts from wherever they are.
     pub(crate) fn by_rows(&self, rows: Snapshot, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
-        let Self { dir, work, id, prepared, seed, alone } = *self;
+        let Self { dir, work, id, prepared, seed, alone, keep } = *self;
         let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
         let history = History::of_rows(rows);
-        conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch, work, alone })
+        conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch, work, alone, keep })
     }
 }
 

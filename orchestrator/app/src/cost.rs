@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use socrates_model::{AuthorSpec, FaultCode, Signature};
 use socrates_orchestrator::{pipeline, price_of};
 
+use crate::bundle;
 use crate::config::Config;
 use crate::exit::Complaint;
 use crate::output::Printer;
@@ -191,7 +192,7 @@ pub(crate) fn bundles_in(what: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
 
 /// The folder itself where it is a bundle, else the bundles inside, in order of their names.
 fn inside(path: &Path) -> Vec<PathBuf> {
-    let is_bundle = |dir: &Path| dir.join(crate::layout::PROVENANCE.path).is_file();
+    let is_bundle = |dir: &Path| bundle::archive(dir).is_some() || dir.join(crate::layout::PROVENANCE.path).is_file();
     if is_bundle(path) {
         return vec![path.to_path_buf()];
     }
@@ -202,11 +203,10 @@ fn inside(path: &Path) -> Vec<PathBuf> {
 }
 
 /// What each model was asked for a bundle: every attempt of every revision, refused ones included.
-fn exchanges(bundle: &Path) -> Result<BTreeMap<String, Sum>, Complaint> {
-    let path = bundle.join(crate::layout::PROVENANCE.path);
-    let broken = |why: String| Complaint::input(format!("`{}`: {why}", path.display()), "make the bundle again");
-    let text = std::fs::read_to_string(&path).map_err(|why| broken(why.to_string()))?;
-    let provenance: Value = serde_json::from_str(&text).map_err(|why| broken(why.to_string()))?;
+fn exchanges(dir: &Path) -> Result<BTreeMap<String, Sum>, Complaint> {
+    let name = crate::layout::PROVENANCE.path;
+    let provenance: Value = serde_json::from_slice(&bundle::file(dir, name)?)
+        .map_err(|why| Complaint::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
     Ok(sums(&provenance))
 }
 

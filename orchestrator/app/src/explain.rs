@@ -6,6 +6,7 @@ use serde_json::json;
 use socrates_model::FaultCode;
 use socrates_scoring::metrics::{CATALOG, Direction, Family, Sheet};
 
+use crate::bundle;
 use crate::config::Config;
 use crate::exit::Complaint;
 use crate::output::{Format, Printer};
@@ -189,12 +190,20 @@ pub fn config(talk: &Printer, config: &Config, part: Option<&str>) -> Result<(),
     Ok(())
 }
 
-/// Opens the page of a bundle with the desktop's program, or says where it is.
-pub fn open(talk: &Printer, bundle: &Path) -> Result<(), Complaint> {
-    let page = bundle.join(crate::layout::PAGE.path);
+/// Opens the page of a bundle with the desktop's program, or says where it is. A packed bundle becomes a folder beside its file.
+pub fn open(talk: &Printer, what: &Path) -> Result<(), Complaint> {
+    let folder = match bundle::archive(what) {
+        Some(archive) => {
+            let folder = bundle::unpack_beside(&archive)?;
+            talk.line(&format!("unpacked   {}", folder.display()));
+            folder
+        }
+        None => what.to_path_buf(),
+    };
+    let page = folder.join(crate::layout::PAGE.path);
     if !page.is_file() {
         return Err(Complaint::input(
-            format!("`{}` has no report.html", bundle.display()),
+            format!("`{}` has no report.html", what.display()),
             "name the folder that `socrates run` printed after `look`",
         ));
     }

@@ -43,10 +43,10 @@ pub fn export(talk: &Printer, what: &[PathBuf], out: &Path) -> Result<(), Compla
 /// What was asked for a bundle. One question is what has the same stage and inputs: asked again, with another seed, or after a
 /// run it stays the same question.
 fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
-    let path = dir.join(crate::layout::PROVENANCE.path);
-    let broken = |why: String| Complaint::input(format!("`{}`: {why}", path.display()), "make the bundle again");
-    let text = std::fs::read_to_string(&path).map_err(|why| broken(why.to_string()))?;
-    let provenance: Value = serde_json::from_str(&text).map_err(|why| broken(why.to_string()))?;
+    let name = crate::layout::PROVENANCE.path;
+    let text = bundle::file(dir, name)?;
+    let provenance: Value = serde_json::from_slice(&text)
+        .map_err(|why| Complaint::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
     let whole = bundle::read_some(dir, |_, _| false)?;
     let mut found: BTreeMap<(Stage, String), Vec<Exchange>> = BTreeMap::new();
     let mut reviewed = false;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
 use socrates_model::{Report, Run, ScenarioEnd};
 use socrates_scoring::metrics::{KEY_FIGURES, key_figures};
 use socrates_stream::csv::{joined, one_line};
@@ -26,12 +27,13 @@ pub(crate) struct Scenario<'a> {
     pub(crate) request: &'a str,
     /// Name of its location.
     pub(crate) location: &'a str,
-    /// Its folder, from where the table lies.
+    /// Its folder or file, from where the table lies; empty where its bundle was not kept.
     pub(crate) path: &'a str,
 }
 
 /// Rows of the runs of one scenario; whether it repeats another is said when they are added.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(transparent)]
 pub(crate) struct Rows(Vec<Vec<String>>);
 
 impl Rows {

@@ -51,6 +51,8 @@ pub mod golden;
 mod history;
 mod in_process;
 mod index;
+pub mod keep;
+mod kept;
 pub mod keys;
 pub mod labels;
 pub mod layout;

@@ -25,7 +25,7 @@ pub(crate) struct Row {
     /// Name of its request.
     #[serde(default)]
     pub(crate) request: String,
-    /// Its folder in the library.
+    /// Its folder or file in the library; empty where its bundle was not kept.
     pub(crate) bundle: String,
     /// Verdict, or `failed` where no bundle could be made.
     pub(crate) verdict: ScenarioEnd,
@@ -38,9 +38,13 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// The row of somebody who looks from outside: its folder with that of the library before it.
+    /// The row of somebody who looks from outside: where its bundle lies with the folder of the library before it.
     pub(crate) fn seen_from(&self, root: &Path) -> Self {
-        Self { bundle: root.join(self.scenario.as_str()).display().to_string(), ..self.clone() }
+        let bundle = match self.bundle.as_str() {
+            "" => String::new(),
+            bundle => root.join(bundle).display().to_string(),
+        };
+        Self { bundle, ..self.clone() }
     }
 }
 

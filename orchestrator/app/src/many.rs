@@ -10,6 +10,8 @@ use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 use crate::bundler::{Bundled, Bundler};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::keep::Keep;
+use crate::kept::Lines;
 use crate::output::Printer;
 use crate::place::{self, Place};
 use crate::prepare::Prepared;
@@ -66,14 +68,15 @@ pub(crate) async fn batch(
         wanted.retain(|_| place.next().is_some_and(|place| shard.holds(place)));
         talk.line(&format!("shard      {shard} · {} of {}", wanted.len(), plural(whole, "scenario")));
     }
-    let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
+    let keep = options.keep.unwrap_or_else(|| Keep::of(wanted.len()));
+    let mut bundler = Bundler::start(&root, &work, keep, &wanted, &prepared);
     // Until the last bundle is written, nobody else makes them. Of more shards than scenarios some are empty.
     let making = Making { talk, config, options, work: &work, wanted: &wanted };
     let _hold = if wanted.is_empty() { None } else { Some(making.bundled(&mut bundler).await?) };
     let made = ended(&wanted, bundler.finish(talk).await?);
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     let list = library_index::Library::new(wish, part, wanted.len(), readings);
-    write(talk, &root, list, made)?;
+    write(talk, &root, &work, list, made)?;
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
     let code = finish(talk, options.require, &root, refused)?;
@@ -138,22 +141,23 @@ fn ended(wanted: &[Wanted<'_>], mut bundled: BTreeMap<ScenarioId, Bundled>) -> V
 }
 
 /// Writes the list, the page and the tables of a folder whose bundles are written. The list is filled with the scenarios, which stand
-/// in their order.
+/// in their order. `work`: its work folder, with the lines of scenarios whose bundles are not kept.
 pub(crate) fn write(
     talk: &Printer,
     root: &Path,
+    work: &Path,
     mut list: library_index::Library,
     made: Vec<Ended>,
 ) -> Result<(), Complaint> {
     let mut cards = BTreeMap::new();
     let mut repeats = library_index::Repeats::default();
     for Ended { scenario, request, what } in made {
-        let (verdict, repeats, reason) = match what {
+        let (verdict, repeats, reason, bundle) = match what {
             Ok(card) => {
                 let earlier = repeats.of(&scenario, card.likeness.clone());
-                let verdict = ScenarioEnd::Judged(card.verdict);
+                let (verdict, bundle) = (ScenarioEnd::Judged(card.verdict), card.lies());
                 cards.insert(scenario.to_string(), card);
-                (verdict, earlier, String::new())
+                (verdict, earlier, String::new(), bundle)
             }
             Err(why) => {
                 let reason = why.short();
@@ -162,12 +166,13 @@ pub(crate) fn write(
                     Some(first) => talk.warn(&format!("{scenario}: failed as `{first}` did")),
                     None => talk.warn(&format!("{scenario}: {why}")),
                 }
-                (ScenarioEnd::Failed, earlier, reason)
+                (ScenarioEnd::Failed, earlier, reason, scenario.to_string())
             }
         };
-        let bundle = scenario.to_string();
         list.scenarios.push(library_index::Row { scenario, request, bundle, verdict, reason, repeats });
     }
+    let kept = list.scenarios.iter().filter(|row| row.bundle.is_empty());
+    Lines::of(work).assemble(root, kept.map(|row| &row.scenario))?;
     library_index::write(root, &list)?;
     if list.scenarios.is_empty() {
         return Ok(());

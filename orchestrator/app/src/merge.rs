@@ -6,12 +6,14 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use socrates_model::ScenarioEnd;
 
 use crate::batch::Card;
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
+use crate::kept::Lines;
 use crate::library_index::{self, Library, Part, Row};
 use crate::many::{self, Ended};
 use crate::output::Printer;
@@ -22,6 +24,8 @@ use crate::shard::Shard;
 use crate::words::plural;
 use crate::{bundle, cores};
 
+/// What helps with a shard that has changed.
+const AGAIN: &str = "its files were changed by hand: make the shard again in an empty folder";
 /// Shards that are named one by one where several lack.
 const NAMED: usize = 12;
 
@@ -71,6 +75,7 @@ pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> 
     };
     let work = place::claim(&root, wish)?;
     let hold = Hold::take(&work)?;
+    shards.iter().try_for_each(|one| Lines::of(&work).adopt(&one.folder))?;
     let mut progress = Progress::new(*talk, "merging", pieces.len());
     let mut done = 0;
     let came = cores::each(
@@ -86,7 +91,7 @@ pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> 
     let made = pieces.iter().zip(came.into_iter().flatten()).map(|(piece, what)| ended(piece.row, what));
     let made = made.collect::<Result<Vec<Ended>, Complaint>>()?;
     let list = Library::new(wish, None, pieces.len(), first.library.readings.clone());
-    many::write(talk, &root, list, made)?;
+    many::write(talk, &root, &work, list, made)?;
     drop(std::fs::remove_dir_all(&work));
     many::finish(talk, Require::Any, &root, &[])
 }
@@ -103,10 +108,16 @@ impl Piece<'_> {
         if self.row.verdict == ScenarioEnd::Failed {
             return Ok(None);
         }
+        if self.row.bundle.is_empty() {
+            let gone =
+                || Complaint::input(format!("`{}` has lost `{}`", self.from.display(), self.row.scenario), AGAIN);
+            let (kept, location) = Lines::of(work).get(&self.row.scenario).ok_or_else(gone)?;
+            return Ok(Some(Card::kept(kept, Arc::new(location))));
+        }
         let name = self.row.scenario.as_str();
         let (from, to) = (self.from.join(name), root.join(name));
         if !bundle::is_bundle(&to) {
-            if moves && std::fs::rename(&from, &to).is_ok() {
+            if moves && bundle::moved(&from, &to) {
                 bundle::whole(&to)?;
             } else {
                 bundle::copy(&from, &to, work)?;
@@ -127,10 +138,7 @@ fn pieces(shards: &[Found]) -> Result<Vec<Piece<'_>>, Complaint> {
                 one.part.shard,
                 one.folder.display()
             );
-            return Err(Complaint::input(
-                what,
-                "its list was changed by hand: make the shard again in an empty folder",
-            ));
+            return Err(Complaint::input(what, AGAIN));
         }
     }
     let mut rows: Vec<_> = shards.iter().map(|one| (one.folder.as_path(), one.library.scenarios.iter())).collect();

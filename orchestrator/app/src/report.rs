@@ -19,6 +19,12 @@ pub fn report(talk: &Printer, what: &Path) -> Result<(), Complaint> {
     if !bundle::is_bundle(what) {
         return batch::report(talk, what);
     }
+    if let Some(archive) = bundle::archive(what) {
+        return Err(Complaint::input(
+            format!("`{}` is packed, and its page is in it", archive.display()),
+            format!("`tar --zstd -xf {}` makes a folder of it; `socrates open` does too", archive.display()),
+        ));
+    }
     let bundle = bundle::read(what)?;
     let (stages, author) = past(what);
     let file = what.join(layout::PAGE.path);
@@ -30,8 +36,8 @@ pub fn report(talk: &Printer, what: &Path) -> Result<(), Complaint> {
 
 /// Stage lines and author out of the provenance of a bundle; a bundle without one has neither.
 pub(crate) fn past(dir: &Path) -> (Vec<StageRow>, String) {
-    let text = std::fs::read_to_string(dir.join(layout::PROVENANCE.path)).unwrap_or_default();
-    let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let text = bundle::file(dir, layout::PROVENANCE.path).unwrap_or_default();
+    let value: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
     let word = |value: &serde_json::Value, key: &str| -> String {
         value.get(key).and_then(serde_json::Value::as_str).unwrap_or_default().to_owned()
     };

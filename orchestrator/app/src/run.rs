@@ -12,6 +12,7 @@ use crate::conclude::Finished;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::PastJob;
+use crate::keep::Keep;
 use crate::many::Library;
 use crate::output::Printer;
 use crate::place::{self, Place};
@@ -152,6 +153,12 @@ fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Complaint
         }
     }
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
+    if options.keep.is_some() && count == 1 && options.shard.is_none() {
+        return Err(Complaint::input(
+            "`--keep` says what a library of several scenarios keeps; one is asked for, and it is kept",
+            "leave it out, or ask for more with `--variants`",
+        ));
+    }
     if options.ask && count != 1 {
         return Err(Complaint::input(
             format!("`--ask` looks at one scenario; {count} are asked for"),
@@ -246,7 +253,8 @@ async fn one(
             (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
         move || -> Result<Bundle, Complaint> {
             let reader = Reader::open(&work::store(&work)).map_err(work::unread)?;
-            Finished { dir: &dir, work: &work, id: &id, prepared: &prepared, seed, alone: true }.by_store(&reader)
+            Finished { dir: &dir, work: &work, id: &id, prepared: &prepared, seed, alone: true, keep: Keep::Folders }
+                .by_store(&reader)
         }
     };
     let want = Wanted { id, index: 0, seed: options.seed, prepared: &prepared };

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use socrates_model::{AuthorSpec, PlannerName, Seeds};
 
+use crate::keep::Keep;
 use crate::shard::Shard;
 
 /// What a run has to be for its exit code to be 0.
@@ -43,6 +44,8 @@ pub struct RunOptions {
     pub repeats: bool,
     /// Which share of the scenarios is made; none for all of them.
     pub shard: Option<Shard>,
+    /// Which bundles a library keeps; none decides by the number of scenarios.
+    pub keep: Option<Keep>,
     /// Author.
     pub author: Option<AuthorSpec>,
     /// Pace of the simulation: `max`, or simulated seconds per second.
@@ -72,6 +75,7 @@ impl RunOptions {
             variants: None,
             repeats: false,
             shard: None,
+            keep: None,
             author: None,
             pace: "max".to_owned(),
             require: Require::Any,

@@ -79,8 +79,8 @@ pub(crate) fn line_of(status: &ScenarioStatus) -> String {
 
 /// The line of a finished bundle as its provenance tells of it; empty where it has none.
 pub(crate) fn line_of_bundle(dir: &Path, verdict: Verdict) -> String {
-    let text = std::fs::read_to_string(dir.join(crate::layout::PROVENANCE.path)).unwrap_or_default();
-    let provenance: Value = serde_json::from_str(&text).unwrap_or_default();
+    let text = crate::bundle::file(dir, crate::layout::PROVENANCE.path).unwrap_or_default();
+    let provenance: Value = serde_json::from_slice(&text).unwrap_or_default();
     let jobs = provenance.get("jobs").and_then(Value::as_array).into_iter().flatten();
     of(&jobs.filter_map(told).collect::<Vec<_>>(), Some(ScenarioEnd::Judged(verdict)))
 }

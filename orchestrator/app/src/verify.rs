@@ -10,7 +10,7 @@ use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::progress::Progress;
 use crate::words::plural;
-use crate::{batch, bundle, cores, library_index};
+use crate::{batch, bundle, cores, kept, library_index};
 
 /// What is wrong with a bundle.
 #[derive(Debug, PartialEq, Eq)]
@@ -79,8 +79,13 @@ fn of_library(root: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Complaint> {
     let found: BTreeSet<String> = batch::bundles(root)?.into_iter().collect();
     let listed = if root.join(library_index::FILE).is_file() { Some(library_index::read_whole(root)?) } else { None };
     let rows = listed.into_iter().flat_map(|library| library.scenarios);
-    let made = rows.filter(|row| row.verdict != ScenarioEnd::Failed).map(|row| row.scenario.to_string());
-    let gone = made.filter(|name| !found.contains(name)).map(|name| root.join(name)).collect();
+    let kept = kept::names(root)?;
+    let made = rows.filter(|row| row.verdict != ScenarioEnd::Failed);
+    let there = |row: &library_index::Row| {
+        let name = row.scenario.as_str();
+        found.contains(name) || row.bundle.is_empty() && kept.contains(name)
+    };
+    let gone = made.filter(|row| !there(row)).map(|row| root.join(row.scenario.as_str())).collect();
     Ok((found.iter().map(|name| root.join(name)).collect(), gone))
 }
 

@@ -93,7 +93,12 @@ pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> R
     let names: Vec<String> = runs.iter().map(Run::to_string).collect();
     let out = options.out.clone().unwrap_or_else(|| {
         let ending = if ffmpeg.is_some() { "mp4" } else { "gif" };
-        options.bundle.join(format!("{}.{ending}", names.join("+")))
+        let name = format!("{}.{ending}", names.join("+"));
+        // Into the folder, or beside the file of a packed one.
+        match bundle::archive(&options.bundle) {
+            Some(archive) => archive.with_file_name(format!("{}.{name}", bundle.manifest.scenario)),
+            None => options.bundle.join(name),
+        }
     });
     let kind = Kind::of(&out)?;
     if kind.needs_ffmpeg() && ffmpeg.is_none() {

@@ -100,10 +100,11 @@
   const address = (row) => row.folder.split("/").map(encodeURIComponent).join("/") + "/report.html";
   function item(row) {
     const node = word("li", ""), href = row.folder === undefined ? null : address(row);
-    if (href) { const link = word("a", "", node); link.href = href; link.tabIndex = -1; thumbnail(row, link); } else word("span", "", node, "thumb");
+    if (href) { const link = word("a", "", node); link.href = href; link.tabIndex = -1; thumbnail(row, link); } else thumbnail(row, word("span", "", node));
     const middle = word("div", "", node), title = word("h3", "", middle);
-    if (href) { const link = word("a", row.title || row.scenario, title); link.href = href; } else title.textContent = row.scenario;
+    if (href) { const link = word("a", row.title || row.scenario, title); link.href = href; } else title.textContent = row.title || row.scenario;
     word("span", row.scenario, title, "tag");
+    if (row.file !== undefined) { const link = word("a", "packed bundle", title, "tag"); link.href = row.file.split("/").map(encodeURIComponent).join("/"); link.download = ""; }
     if (row.reading) words("p", row.reading, middle);
     if (row.rough || row.context) { const said = word("p", "", middle, "quiet said"); word("q", (row.rough || row.context + " · " + row.task).trim(), said); }
     if (row.location) word("p", [row.location, plain(row.place), plain(row.pattern), count(row.humans, "human"), row.author].join(" · "), middle, "quiet");
@@ -218,6 +219,18 @@
   at("fold").addEventListener("change", () => { page = 0; list(); });
   addEventListener("beforeprint", () => { whole = true; list(); });
   addEventListener("afterprint", () => { whole = false; list(); });
+  // Other pages of a large library: filters act on the scenarios of this one.
+  function parts() {
+    if (!data.parts) return;
+    const nav = at("parts"), { links, here, all } = data.parts;
+    nav.hidden = false;
+    word("p", `${count(all.scenarios, "scenario")} on ${links.length} pages · ${all.distinct} distinct · ${all.realised} realised · ${wilson(all.realised, all.distinct)}. Lists and filters are of this page; socrates library query searches all.`, nav, "quiet");
+    links.forEach((link, number) => {
+      const node = word(number === here ? "b" : "a", `${link.from}–${link.to}`, nav);
+      if (number !== here) node.href = link.href;
+    });
+  }
+  parts();
   figures();
   filter();
 })();

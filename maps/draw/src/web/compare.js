@@ -94,7 +94,7 @@
     shown = data.beside.find((b) => b.title === title && b.folder === folder && b.seed === seed);
     if (!shown) return;
     const hide = at("hide").checked, order = hide ? shown.hidden_order : shown.runs.map((_, i) => i);
-    at("bundle").href = shown.folder + "/report.html"; at("bundle").hidden = hide || !shown.folder;
+    at("bundle").href = shown.folder.endsWith(".tar.zst") ? shown.folder : shown.folder + "/report.html"; at("bundle").hidden = hide || !shown.folder;
     const box = shown.focus;
     views = panels.map((panel, k) => {
       const i = order[k], run = shown.runs[i], label = hide ? "robot " + String.fromCharCode(65 + k) : name(i);

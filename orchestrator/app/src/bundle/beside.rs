@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::files::{PACKED, pack, packed_at};
 use crate::exit::Complaint;
 use crate::layout;
 
@@ -45,6 +46,23 @@ impl Beside {
             .map_err(cannot)?;
         names.sort_by_key(|name| (name == layout::DETAILS, name.clone()));
         names.iter().try_for_each(|name| std::fs::rename(self.0.join(name), dir.join(name))).map_err(cannot)
+    }
+}
+
+impl Beside {
+    /// Packs the folder into an archive beside where it would belong, by one rename.
+    pub(super) fn appear_packed(&self, dir: &Path) -> Result<(), Complaint> {
+        let name = dir.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let file = self.0.with_file_name(format!("{name}{PACKED}"));
+        let cannot = |why: std::io::Error| cannot(&file, &why);
+        // What an earlier process left there goes.
+        match std::fs::remove_file(&file) {
+            Ok(()) => {}
+            Err(why) if why.kind() == std::io::ErrorKind::NotFound => {}
+            Err(why) => return Err(cannot(why)),
+        }
+        pack(&self.0, &name, &file).map_err(cannot)?;
+        std::fs::rename(&file, packed_at(dir)).map_err(cannot)
     }
 }
 

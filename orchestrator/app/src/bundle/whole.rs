@@ -5,6 +5,7 @@ use std::path::Path;
 use socrates_model::Digest;
 
 use super::beside::Beside;
+use super::files::{Files, PACKED, archive, packed_at};
 use super::read::finished;
 use crate::exit::Complaint;
 
@@ -15,10 +16,9 @@ const NAMED: usize = 3;
 
 /// Files of a finished bundle that are gone or not as they were written, in order of their names.
 pub(crate) fn damaged(dir: &Path) -> Result<Vec<String>, Complaint> {
-    let manifest = finished(dir)?;
-    let same = |(name, digest): &(&String, &Digest)| {
-        std::fs::read(dir.join(name)).is_ok_and(|bytes| Digest::of(&bytes) == **digest)
-    };
+    let files = Files::at(dir)?;
+    let manifest = finished(&files)?;
+    let same = |(name, digest): &(&String, &Digest)| files.read(name).is_ok_and(|bytes| Digest::of(&bytes) == **digest);
     Ok(manifest.files.iter().filter(|file| !same(file)).map(|(name, _)| name.clone()).collect())
 }
 
@@ -32,20 +32,36 @@ pub(crate) fn whole(dir: &Path) -> Result<(), Complaint> {
     let more = if damaged.len() > NAMED { format!(" and {} more", damaged.len() - NAMED) } else { String::new() };
     Err(Complaint::input(
         format!("the bundle `{}` is damaged: {}{more} not as written", dir.display(), named.join(", ")),
-        "remove the folder and run the command that made it again",
+        "remove it and run the command that made it again",
     ))
 }
 
-/// Copies a bundle, checked on both sides. `work`: the work folder of the library, on the same file system as `to`.
+/// Copies a bundle in the form that it has, checked on both sides. `to`: the folder that it is called like; `work`: the work folder of
+/// the library, on the same file system.
 pub(crate) fn copy(from: &Path, to: &Path, work: &Path) -> Result<(), Complaint> {
     let name = to.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let cannot = |why: std::io::Error| {
+        Complaint::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
+    };
     whole(from)?;
     let beside = Beside::new(work, &name)?;
-    tree(from, &beside.0, DEPTH).map_err(|why| {
-        Complaint::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
-    })?;
+    if let Some(packed) = archive(from) {
+        let copied = beside.0.join(format!("{name}{PACKED}"));
+        std::fs::copy(&packed, &copied).map_err(cannot)?;
+        whole(&copied)?;
+        return std::fs::rename(&copied, packed_at(to)).map_err(cannot);
+    }
+    tree(from, &beside.0, DEPTH).map_err(cannot)?;
     whole(&beside.0)?;
     beside.appear(to)
+}
+
+/// Moves a bundle in the form that it has, where both lie on one file system; says whether it did.
+pub(crate) fn moved(from: &Path, to: &Path) -> bool {
+    match archive(from) {
+        Some(packed) => std::fs::rename(packed, packed_at(to)).is_ok(),
+        None => std::fs::rename(from, to).is_ok(),
+    }
 }
 
 /// Copies files and folders; what is neither is left out.

@@ -94,7 +94,8 @@ fn add(
     if runs.iter().all(Option::is_none) {
         return Ok(true);
     }
-    let folder = files::relative(file, &scenario.dir);
+    // The page of a bundle, or the file of a packed one.
+    let folder = files::relative(file, &bundle::archive(&scenario.dir).unwrap_or_else(|| scenario.dir.clone()));
     Ok(page.add(&Beside {
         title: &bundle.proposal.title,
         folder,

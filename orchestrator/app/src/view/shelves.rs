@@ -183,7 +183,8 @@ impl Folder {
 
     /// The runs of a bundle; its manifest is read once, as long as nobody writes it anew: pages ask for the list again and again.
     fn lines(&self, dir: &Path) -> Option<Lines> {
-        let written = std::fs::metadata(dir.join(layout::MANIFEST.path)).ok()?.modified().ok()?;
+        let file = bundle::archive(dir).unwrap_or_else(|| dir.join(layout::MANIFEST.path));
+        let written = std::fs::metadata(file).ok()?.modified().ok()?;
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((at, lines)) = known.get(dir)
             && *at == written
@@ -205,8 +206,8 @@ impl Folder {
         let bundle = bundle::read_some(&dir, |index, _| index == place).map_err(|why| why.to_string())?;
         let Some((recording, report)) = bundle.runs.first().cloned() else { return Ok(None) };
         let entry = bundle.manifest.runs.get(place);
-        let path = entry.map(|entry| dir.join(layout::RECORDINGS.of(&entry.run()))).unwrap_or_default();
-        let file = std::fs::read(&path).map_err(|why| format!("cannot read `{}`: {why}", path.display()))?;
+        let path = entry.map(|entry| layout::RECORDINGS.of(&entry.run())).unwrap_or_default();
+        let file = bundle::file(&dir, &path).map_err(|why| why.what)?;
         let robot = (!recording.header.planner.is_no_robot()).then_some(&bundle.request.robot.model);
         let cells = map_cells(&bundle.location.grid);
         let told = live_scene(&bundle.location, &cells, &bundle.paths, robot, bundle.request.robot.waypoints);

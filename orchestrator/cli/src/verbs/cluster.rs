@@ -7,6 +7,7 @@ use socrates_app::cluster::{self, SubmitOptions};
 use socrates_app::cluster_work::{self, WorkOptions};
 use socrates_app::collect::{self, CollectOptions};
 use socrates_app::config::Config;
+use socrates_app::keep::Keep;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
 
@@ -95,6 +96,9 @@ struct Collect {
     /// Folder of the library.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Which bundles are kept, `folders`, `packed`, `failed` or `index`: see `socrates run --help`.
+    #[arg(long, value_name = "WHICH")]
+    keep: Option<Keep>,
 }
 
 impl Cluster {
@@ -116,10 +120,10 @@ impl Cluster {
                 let to = SubmitOptions { connect, namespace, batch: batch.clone() };
                 cluster::submit(talk, config, requests, &to, &options.values()).await
             }
-            ClusterVerb::Collect(Collect { at, batch, out }) => {
+            ClusterVerb::Collect(Collect { at, batch, out, keep }) => {
                 let At { connect, namespace, keys } = at.clone();
                 let config = &keys.over(config)?;
-                let wanted = CollectOptions { connect, namespace, batch: batch.clone(), out: out.clone() };
+                let wanted = CollectOptions { connect, namespace, batch: batch.clone(), out: out.clone(), keep: *keep };
                 collect::collect(talk, config, &wanted).await
             }
         }
@@ -180,8 +184,8 @@ pub(crate) struct Up {
     /// Folder of the job store and the artifacts; on a local disk.
     #[arg(long)]
     dir: PathBuf,
-    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach has TLS and needs `--keys`, such as
-    /// `tls/0.0.0.0:7447`, or needs `--insecure`.
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach takes `--keys`, such as
+    /// `quic/0.0.0.0:7447`, or needs `--insecure`.
     #[arg(long)]
     listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that

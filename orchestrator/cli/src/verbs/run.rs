@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use socrates_app::config::Config;
+use socrates_app::keep::Keep;
 use socrates_app::output::Printer;
 use socrates_app::run;
 use socrates_app::run_options::{self, RunOptions};
@@ -32,6 +33,10 @@ pub(crate) struct Run {
     /// `socrates library merge` puts the folders together.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
+    /// Which bundles of several scenarios are kept: `folders`, `packed` (each in one file, `NAME.tar.zst`), `failed` (packed, those that
+    /// were not realised) or `index` (none: list, page and tables alone); folders up to 1000 scenarios, else packed, if it is left out.
+    #[arg(long, value_name = "WHICH")]
+    keep: Option<Keep>,
     /// Options.
     #[command(flatten)]
     options: Options,
@@ -39,7 +44,7 @@ pub(crate) struct Run {
 
 impl Run {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let options = RunOptions { shard: self.shard, ..self.options.values() };
+        let options = RunOptions { shard: self.shard, keep: self.keep, ..self.options.values() };
         run::run(talk, config, &self.requests, &options).await
     }
 }
@@ -114,6 +119,7 @@ impl Options {
             variants: own.variants,
             repeats: own.repeats,
             shard: None,
+            keep: None,
             author: own.author,
             pace,
             require,
