@@ -1,7 +1,11 @@
-//! `dev bench`: the main job as a user meets it, what the bus adds to each of its stages, and what a library costs.
+//! `dev bench`: the main job as a user meets it, what the bus adds to each of its stages, what a library costs, and how many jobs a
+//! cluster passes on.
 
+mod jobs;
 mod library;
 mod machine;
+
+pub use jobs::{JobsOptions, idle};
 
 use std::path::Path;
 use std::time::Instant;
@@ -23,13 +27,25 @@ const SERIES: u64 = 14;
 /// The first of them warm the processes up and are not counted.
 const WARM_UP: usize = 2;
 
-/// Prints the figures of one scenario, or those of a library where one is asked for; nothing is judged.
-pub async fn bench(talk: &Printer, config: &Config, runs: u32, scenarios: Option<u32>) -> Result<(), Complaint> {
+/// What is measured.
+#[derive(Debug, Clone, Copy)]
+pub enum What {
+    /// One scenario, as the median of this many runs.
+    Scenario(u32),
+    /// A library of at least so many scenarios.
+    Library(u32),
+    /// Jobs that do nothing.
+    Jobs(JobsOptions),
+}
+
+/// Prints the figures; nothing is judged.
+pub async fn bench(talk: &Printer, config: &Config, what: What) -> Result<(), Complaint> {
     let folder = config.program().temp.join(format!("socrates-bench-{}", std::process::id()));
     machine::told(&config.program().build).iter().for_each(|line| talk.line(line));
-    let measured = match scenarios {
-        Some(scenarios) => library::bench(talk, config, scenarios, &folder).await,
-        None => measure(talk, config, runs, &folder).await,
+    let measured = match what {
+        What::Library(scenarios) => library::bench(talk, config, scenarios, &folder).await,
+        What::Scenario(runs) => measure(talk, config, runs, &folder).await,
+        What::Jobs(options) => jobs::bench(talk, config, &options, &folder).await,
     };
     drop(std::fs::remove_dir_all(&folder));
     measured

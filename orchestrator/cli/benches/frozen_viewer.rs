@@ -8,7 +8,6 @@
 //! Linux alone: processor time is read from `/proc`, in steps of 10 ms.
 #![expect(
     clippy::unwrap_used,
-    clippy::panic,
     clippy::print_stdout,
     clippy::indexing_slicing,
     reason = "a bench ends where it cannot measure, and prints what it measured"

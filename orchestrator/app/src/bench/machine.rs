@@ -57,6 +57,16 @@ pub(super) fn family(of: u32) -> BTreeMap<u32, Used> {
     family.into_iter().filter_map(used).collect()
 }
 
+/// Processor time of a process so far, s; not a number where the system does not tell.
+pub(super) fn cpu_s(id: u32) -> f64 {
+    stat(id).map_or(f64::NAN, |stat| stat.cpu_s)
+}
+
+/// Memory of a process that is in use now, MB; not a number where the system does not tell.
+pub(super) fn resident_mb(id: u32) -> f64 {
+    memory_mb(id, "VmRSS:")
+}
+
 /// Processor time of all children of this process that have ended, s.
 pub(super) fn ended_children_s() -> f64 {
     stat(std::process::id()).map_or(f64::NAN, |stat| stat.children_s)
@@ -97,8 +107,13 @@ fn name(id: u32) -> String {
 }
 
 fn peak_mb(id: u32) -> f64 {
+    memory_mb(id, "VmHWM:")
+}
+
+/// A line of `/proc/PID/status` (proc(5)).
+fn memory_mb(id: u32, which: &str) -> f64 {
     let text = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
-    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let line = text.lines().find_map(|line| line.strip_prefix(which));
     let kb = line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok());
     kb.map_or(f64::NAN, |kb| kb / 1024.0)
 }

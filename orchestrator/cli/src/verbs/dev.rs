@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use socrates_app::bench::{JobsOptions, What};
 use socrates_app::config::Config;
 use socrates_app::fuzz::{self, FuzzOptions};
 use socrates_app::output::Printer;
@@ -122,6 +123,36 @@ enum DevVerb {
         /// Make a library of at least so many scenarios of all shipped requests instead: CPU, memory, growth.
         #[arg(long, value_name = "SCENARIOS", conflicts_with = "runs")]
         library: Option<u32>,
+        /// Pass on so many jobs that do nothing instead, by an orchestrator with a store on disk: rate, its change, hand-over, memory.
+        #[arg(long, value_name = "JOBS", conflicts_with_all = ["runs", "library"], value_parser = clap::value_parser!(u32).range(50..=10_000_000))]
+        jobs: Option<u32>,
+        /// Workers of those jobs on this machine, a process each.
+        #[arg(long, default_value_t = 4, requires = "jobs")]
+        workers: u32,
+        /// Workers that come from elsewhere and are waited for (`dev idle`).
+        #[arg(long, default_value_t = 0, requires = "port")]
+        others: u32,
+        /// How long each job waits, ms.
+        #[arg(long, default_value_t = 0, requires = "jobs", value_name = "MS")]
+        wait: u32,
+        /// Listen on this TCP port of every address, without keys, for workers from elsewhere.
+        #[arg(long, requires = "jobs")]
+        port: Option<u16>,
+    },
+    /// Serve all stages with jobs that only wait, for `dev bench --jobs`.
+    Idle {
+        /// Endpoint of the orchestrator.
+        #[arg(long)]
+        connect: String,
+        /// Folder for reports that are not yet recorded.
+        #[arg(long)]
+        dir: PathBuf,
+        /// How long each job waits, ms.
+        #[arg(long, default_value_t = 0, value_name = "MS")]
+        wait: u32,
+        /// Leave when standard input closes.
+        #[arg(long)]
+        tied: bool,
     },
 }
 
@@ -169,7 +200,18 @@ impl Dev {
                 let Fuzz { seeds, first, door, limit, keep, bundle } = options.clone();
                 fuzz::fuzz(talk, config, &FuzzOptions { seeds, first, door, limit, keep, bundle })
             }
-            DevVerb::Bench { runs, library } => bench::bench(talk, config, *runs, *library).await,
+            DevVerb::Bench { runs, library, jobs, workers, others, wait, port } => {
+                let what = match (*library, *jobs) {
+                    (Some(scenarios), _) => What::Library(scenarios),
+                    (None, Some(jobs)) => {
+                        let (workers, others, wait_ms, port) = (*workers, *others, *wait, *port);
+                        What::Jobs(JobsOptions { jobs, workers, others, wait_ms, port })
+                    }
+                    (None, None) => What::Scenario(*runs),
+                };
+                bench::bench(talk, config, what).await
+            }
+            DevVerb::Idle { connect, dir, wait, tied } => bench::idle(config, connect, dir, *wait, *tied).await,
         })
     }
 }
