@@ -1,6 +1,6 @@
 //! Acquire: who gets which job.
 //!
-//! Later stages first, then the order of submission; a bounded number of scenarios is under way.
+//! Later stages first, then the turns of the batches and the order of submission; a bounded number of scenarios is under way.
 //! The same question gets the same answer, so a lost reply costs time only.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,6 +10,7 @@ use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::{Acquire, Acquired, Grant, Hello, NoWork};
 
 use crate::bucket::{Bucket, server_of};
+use crate::circuit::Allows;
 use crate::event::{Answer, Token};
 use crate::pipeline;
 use crate::state::{Attempt, JobState, Millis, Worker};
@@ -99,10 +100,23 @@ impl Turn<'_> {
             return Err((NoWork::Paused, None));
         }
         for stage in pipeline::URGENCY.into_iter().filter(|stage| ask.stages.contains(stage)) {
+            let allowed = match state.circuits.get(&stage).map_or(Allows::All, |circuit| circuit.allows(self.now)) {
+                Allows::All => most,
+                Allows::One => (chosen.len() + 1).min(most),
+                Allows::NoneUntil(until) => {
+                    if state.has_ready(stage) {
+                        (why, wake) = (NoWork::Throttled, wake.min(until));
+                    }
+                    continue;
+                }
+            };
             let mut held: BTreeSet<&str> = BTreeSet::new();
-            for (_, _, key) in state.ready.get(&stage).into_iter().flatten() {
+            for (_, _, _, key) in state.ready.get(&stage).into_iter().flatten() {
                 if chosen.len() >= most {
                     return Ok(chosen);
+                }
+                if chosen.len() >= allowed {
+                    break;
                 }
                 let (Some(job), Some(scenario)) = (self.job(key), self.scenario(&key.scenario)) else { continue };
                 if state.paused.contains(&scenario.batch) {
@@ -128,7 +142,7 @@ impl Turn<'_> {
                 }
                 let begins = !scenario.started && !scenario.spec.review;
                 if begins && state.under_way + begun >= wip {
-                    // Ready jobs stand in order of submission: the later ones are not begun either,
+                    // Ready jobs stand in the order of their turns: the later ones are not begun either,
                     // but a started one may still come.
                     why = NoWork::Throttled;
                     if stage == Stage::Proposal {
@@ -192,6 +206,7 @@ impl Turn<'_> {
         self.attempt_mut(key, number);
         self.move_to(key, JobState::Leased, "");
         self.with_bucket(key, |bucket, _policy| bucket.take(now, key.stage));
+        self.with_circuit(key, |circuit, policy| circuit.granted(policy, now));
         self.arm(key, Some(lease_until.min(deadline_at)));
         if let Some(worker) = self.state.workers.get_mut(instance) {
             worker.held.insert(key.clone());
@@ -200,9 +215,10 @@ impl Turn<'_> {
             && let Some(scenario) = self.scenario_mut(&key.scenario)
         {
             scenario.started = true;
-            if !scenario.spec.review {
-                self.state.under_way += 1;
-            }
+            let turn = scenario.turn;
+            let counted = !scenario.spec.review;
+            self.state.begun_turn = self.state.begun_turn.max(turn);
+            self.state.under_way += usize::from(counted);
         }
         self.standing_grant(key, number, instance)
     }

@@ -13,6 +13,7 @@ use socrates_model::job::{JobKey, Stage};
 use socrates_model::{Fault, FaultCode};
 
 use crate::bucket::{Bucket, server_of};
+use crate::circuit::Circuit;
 use crate::pipeline;
 use crate::policy::Policy;
 use crate::state::{AttemptEnd, Job, JobState};
@@ -48,6 +49,15 @@ impl Turn<'_> {
         if asks_again && self.stop_if_spent(key, number, &why) {
             return;
         }
+        let now = self.now;
+        self.with_circuit(key, |circuit, policy| match class {
+            FailureClass::Transient => circuit.failed(policy, now),
+            // A server's rates have a way of their own, and a lost worker says nothing of the stage.
+            FailureClass::Overload | FailureClass::WorkerDeath => {}
+            FailureClass::Semantic | FailureClass::Unparsable | FailureClass::Poison | FailureClass::Permanent => {
+                circuit.worked();
+            }
+        });
         match class {
             FailureClass::Transient => {
                 // A question that got no answer in time may have been paid for; passing trouble costs nothing.
@@ -88,6 +98,14 @@ impl Turn<'_> {
         let Some(server) = self.job(key).and_then(|job| server_of(&job.spec)).map(str::to_owned) else { return };
         let (policy, now) = (&self.state.policy, self.now);
         edit(self.state.servers.entry(server).or_insert_with(|| Bucket::new(policy, now)), policy);
+    }
+
+    /// Does something with the circuit of a job's stage, where there are circuits.
+    pub(crate) fn with_circuit(&mut self, key: &JobKey, edit: impl FnOnce(&mut Circuit, &Policy)) {
+        let policy = &self.state.policy;
+        if policy.circuit_percent > 0 {
+            edit(self.state.circuits.entry(key.stage).or_default(), policy);
+        }
     }
 
     fn count(&mut self, key: &JobKey, which: impl FnOnce(&mut Job) -> &mut u32) -> u32 {

@@ -13,6 +13,7 @@
 //! *Never here:* a runtime, the bus, a file, a clock, a random number, what an artifact contains.
 
 pub mod bucket;
+pub mod circuit;
 pub mod event;
 pub mod pipeline;
 pub mod policy;
@@ -28,6 +29,7 @@ mod failure;
 mod recover;
 mod report;
 mod revision;
+mod share;
 mod submit;
 mod timer;
 

@@ -71,6 +71,10 @@ pub struct Policy {
     pub tokens_per_minute: u64,
     /// Questions that one author's server is asked in a minute; 0 leaves it to what the server says. Default 0.
     pub requests_per_minute: u64,
+    /// Share of a stage's attempts in a minute, percent, above which failures in passing let it rest; 0 never does. Default 0.
+    pub circuit_percent: u32,
+    /// How long it rests before one attempt is tried, ms. Default 30 000.
+    pub circuit_ms: u64,
     /// Version that workers must have; empty takes any. Enters the idempotency keys.
     pub code_version: String,
 }
@@ -108,6 +112,8 @@ impl Default for Policy {
             prices: std::collections::BTreeMap::new(),
             tokens_per_minute: 0,
             requests_per_minute: 0,
+            circuit_percent: 0,
+            circuit_ms: 30_000,
             code_version: String::new(),
         }
     }

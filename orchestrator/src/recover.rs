@@ -46,6 +46,7 @@ impl State {
             state.done += usize::from(scenario.end.is_some());
             state.under_way += usize::from(counted);
             state.by_order.insert(scenario.order, scenario.spec.id.clone());
+            state.had_turn(&scenario.batch, scenario.turn, scenario.started);
             state.scenarios.insert(scenario.spec.id.clone(), scenario);
         }
         for job in snapshot.jobs {

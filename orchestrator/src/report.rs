@@ -60,6 +60,7 @@ impl Turn<'_> {
             match failure {
                 Some(failure) => self.fail(&key, &failure),
                 None => {
+                    self.with_circuit(&key, |circuit, _policy| circuit.worked());
                     self.end_current(&key, AttemptEnd::Succeeded);
                     self.accept(report);
                 }

@@ -11,6 +11,7 @@ use socrates_model::wire::{Hello, ScenarioSpec};
 use socrates_model::{Digest, Fault, Role, ScenarioId};
 
 use crate::bucket::Bucket;
+use crate::circuit::Circuit;
 use crate::policy::Policy;
 
 /// Time on the shell's monotonic clock, ms. Its zero has no meaning.
@@ -201,6 +202,9 @@ pub struct Scenario {
     pub batch: String,
     /// Place in the order of submission.
     pub order: u64,
+    /// Its turn among the scenarios of all batches: the lowest is begun first.
+    #[serde(default)]
+    pub turn: u64,
     /// What was asked for.
     pub spec: ScenarioSpec,
     /// Newest revision.
@@ -269,12 +273,18 @@ pub struct State {
     pub author_slots: u32,
     /// What is known of the authors' servers, by server and model.
     pub servers: BTreeMap<String, Bucket>,
-    /// When somebody who was held back by a server's rates may go on; 0 where nobody was.
+    /// What came of the attempts of each stage lately; empty after a restart.
+    pub circuits: BTreeMap<Stage, Circuit>,
+    /// When somebody who was held back by a server's rates, or by a circuit, may go on; 0 where nobody was.
     pub author_wake_at: Millis,
     /// Scenarios in order of submission.
     pub(crate) by_order: BTreeMap<u64, ScenarioId>,
-    /// Ready jobs by stage, oldest scenario first, then in order of their making.
-    pub(crate) ready: BTreeMap<Stage, BTreeSet<(u64, usize, JobKey)>>,
+    /// Last turn that each batch took.
+    pub(crate) last_turns: BTreeMap<String, u64>,
+    /// Highest turn of a scenario that was begun.
+    pub(crate) begun_turn: u64,
+    /// Ready jobs by stage: by the turn of their scenario, then its place, then in order of their making.
+    pub(crate) ready: BTreeMap<Stage, BTreeSet<(u64, u64, usize, JobKey)>>,
     /// Who is due when.
     pub(crate) timers: BTreeSet<(Millis, JobKey)>,
     /// Results by idempotency key.
@@ -309,8 +319,11 @@ impl State {
             next_order: 0,
             next_seq: 1,
             servers: BTreeMap::new(),
+            circuits: BTreeMap::new(),
             author_wake_at: 0,
             by_order: BTreeMap::new(),
+            last_turns: BTreeMap::new(),
+            begun_turn: 0,
             ready: BTreeMap::new(),
             timers: BTreeSet::new(),
             cached: BTreeMap::new(),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::fault::Fault;
 use socrates_model::job::{Item, JobKey, JobSpec, Look, Stage};
-use socrates_model::wire::{Hello, ScenarioSpec, Submit, Submitted, Welcome};
+use socrates_model::wire::{Hello, Priority, ScenarioSpec, Submit, Submitted, Welcome};
 use socrates_model::{Role, Run, ScenarioId};
 
 use crate::event::{Answer, Token};
@@ -68,7 +68,7 @@ impl Turn<'_> {
         let new = u32::try_from(order.len()).unwrap_or(u32::MAX);
         for id in order {
             if let Some(spec) = fresh.remove(&id) {
-                self.begin(&submit.batch, spec);
+                self.begin(&submit.batch, submit.priority, spec);
             }
         }
         Submitted::Accepted { new }
@@ -87,13 +87,14 @@ impl Turn<'_> {
         Ok(())
     }
 
-    fn begin(&mut self, batch: &str, spec: ScenarioSpec) {
+    fn begin(&mut self, batch: &str, priority: Priority, spec: ScenarioSpec) {
         let id = spec.id.clone();
         let order = self.state.next_order;
         self.state.next_order += 1;
         let stages = pipeline::authored(&spec);
         let lead = pipeline::lead(&spec);
-        let scenario = Scenario::new(batch, order, spec);
+        let turn = self.state.take_turn(batch, priority);
+        let scenario = Scenario::new(batch, order, turn, spec);
         self.state.scenarios.insert(id.clone(), scenario);
         self.state.by_order.insert(order, id.clone());
         self.scenario_mut(&id);
@@ -297,10 +298,11 @@ impl Worker {
 impl Scenario {
     /// A scenario that was just submitted.
     #[must_use]
-    pub(crate) fn new(batch: &str, order: u64, spec: ScenarioSpec) -> Self {
+    pub(crate) fn new(batch: &str, order: u64, turn: u64, spec: ScenarioSpec) -> Self {
         Self {
             batch: batch.to_owned(),
             order,
+            turn,
             spec,
             revision: 0,
             repairs: 0,

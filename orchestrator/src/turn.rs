@@ -296,12 +296,12 @@ impl<'a> Turn<'a> {
         self.index(key);
     }
 
-    fn ready_place(&self, key: &JobKey) -> Option<(u64, usize, JobKey)> {
+    fn ready_place(&self, key: &JobKey) -> Option<(u64, u64, usize, JobKey)> {
         let job = self.job(key)?;
         let scenario = self.scenario(&key.scenario)?;
         // The reference robot goes before the planners under test, whatever their names.
         let rank = usize::from(job.spec.run().is_some_and(|run| !run.planner.is_reference()));
-        Some((scenario.order, rank, key.clone()))
+        Some((scenario.turn, scenario.order, rank, key.clone()))
     }
 
     /// Tells viewers where a job stands now, through the outbox.

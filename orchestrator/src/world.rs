@@ -6,8 +6,8 @@ use socrates_model::fault::{FailureClass, Fault, FaultCode, Where};
 use socrates_model::job::{Artifact, Item, JobKey, Stage};
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatReply, Control, Grant, Held, Outcome, Recorded, Release, Report, ScenarioSpec, Submit,
-    Submitted,
+    Acquire, Acquired, Beat, BeatReply, Control, Grant, Held, Outcome, Priority, Recorded, Release, Report,
+    ScenarioSpec, Submit, Submitted,
 };
 use socrates_model::{Digest, PlannerName, Role, ScenarioId};
 
@@ -74,7 +74,11 @@ impl World {
     }
 
     pub(crate) fn submit(&mut self, specs: Vec<ScenarioSpec>) -> Submitted {
-        let submit = Submit { batch: "b".to_owned(), scenarios: specs };
+        self.submit_as("b", Priority::Normal, specs)
+    }
+
+    pub(crate) fn submit_as(&mut self, batch: &str, priority: Priority, scenarios: Vec<ScenarioSpec>) -> Submitted {
+        let submit = Submit { batch: batch.to_owned(), priority, scenarios };
         match self.send(|to| Event::Submit { submit, to }) {
             Some(Answer::Submitted(answer)) => answer,
             other => panic!("{other:?}"),

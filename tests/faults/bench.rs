@@ -11,7 +11,7 @@ use socrates_kit::Failure;
 use socrates_model::fault::hard;
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::statement::Became;
-use socrates_model::wire::{Acquire, Acquired, Grant, Outcome, Report, ScenarioSpec, Submit};
+use socrates_model::wire::{Acquire, Acquired, Grant, Outcome, Priority, Report, ScenarioSpec, Submit};
 use socrates_model::{
     Behaviors, Digest, Fault, Location, Paths, PlannerName, Proposal, Reading, Recording, Request, Role, RunId,
     ScenarioId,
@@ -134,7 +134,7 @@ impl Bench {
             review: false,
             order: None,
         };
-        let submit = Submit { batch: "b".to_owned(), scenarios: vec![spec] };
+        let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![spec] };
         bench.send(|to| Event::Submit { submit, to });
         bench
     }

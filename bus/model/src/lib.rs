@@ -32,6 +32,7 @@ pub mod clause;
 pub mod form;
 pub mod likeness;
 pub mod paths;
+pub mod priority;
 pub mod proposal;
 pub mod reading;
 pub mod request;

@@ -12,6 +12,7 @@ use crate::hash::Digest;
 use crate::ids::ScenarioId;
 use crate::job::{Artifact, JobKey, JobSpec, Stage};
 use crate::planner_name::PlannerName;
+pub use crate::priority::Priority;
 use crate::role::Role;
 use crate::standing::{JobState, ScenarioEnd};
 
@@ -312,6 +313,9 @@ pub struct ScenarioSpec {
 pub struct Submit {
     /// Batch name; the same batch and scenario id again is taken as the same wish.
     pub batch: String,
+    /// How urgent they are beside other batches.
+    #[serde(default, skip_serializing_if = "Priority::is_normal")]
+    pub priority: Priority,
     /// Scenarios, at most as many as fit a message; call again for more.
     pub scenarios: Vec<ScenarioSpec>,
 }

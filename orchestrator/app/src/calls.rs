@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use socrates_link::{Bus, LinkError, call, keys};
-use socrates_model::wire::{PastAsk, PastEnd, PastPart, ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted};
+use socrates_model::wire::{
+    PastAsk, PastEnd, PastPart, Priority, ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted,
+};
 use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
@@ -23,12 +25,17 @@ const ROWS_MOST: u64 = 256 << 20;
 const SUBMIT_AT_ONCE: usize = 40;
 
 /// Submits scenarios, in several messages if need be; gives how many were not known before.
-pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>) -> Result<u64, Complaint> {
+pub(crate) async fn submit(
+    bus: &dyn Bus,
+    batch: &str,
+    priority: Priority,
+    specs: Vec<ScenarioSpec>,
+) -> Result<u64, Complaint> {
     let mut fresh: u64 = 0;
     let mut specs = specs.into_iter().peekable();
     while specs.peek().is_some() {
         let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
-        let wish = Submit { batch: batch.to_owned(), scenarios };
+        let wish = Submit { batch: batch.to_owned(), priority, scenarios };
         let started = Instant::now();
         loop {
             match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {

@@ -6,7 +6,7 @@ use serde_json::json;
 use socrates_kit::{Blobs, LocalBlobs};
 use socrates_link::rules::Role;
 use socrates_model::Digest;
-use socrates_model::wire::ScenarioSpec;
+use socrates_model::wire::{Priority, ScenarioSpec};
 
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
@@ -31,6 +31,8 @@ pub struct SubmitOptions {
     pub namespace: String,
     /// Name of the batch; without one it is called after what it is made from.
     pub batch: Option<String>,
+    /// How urgent it is beside other batches.
+    pub priority: Priority,
 }
 
 /// Submits requests and returns; `socrates status ENDPOINT` shows how they stand, `socrates cluster collect` writes their bundles.
@@ -74,7 +76,7 @@ pub async fn submit(
     }
     let count = specs.len();
     let batch = to.batch.clone().unwrap_or_else(|| format!("batch-{}", library.short()));
-    let fresh = calls::submit(bus.as_ref(), &batch, specs).await?;
+    let fresh = calls::submit(bus.as_ref(), &batch, to.priority, specs).await?;
     bus.close().await;
     talk.line(&format!(
         "submitted  {} from {} as `{batch}`{}",

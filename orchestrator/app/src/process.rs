@@ -220,7 +220,12 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
             config.number("orchestrator.author_s_per_scenario").saturating_mul(1_000),
         ),
         cents_per_scenario: config.number("orchestrator.cents_per_scenario"),
-        prices: crate::cost::prices_of(config)?,
+        prices: crate::prices::prices_of(config)?,
+        circuit_percent: if options.tied {
+            0
+        } else {
+            u32::try_from(config.number("orchestrator.circuit_percent")).unwrap_or(0).min(100)
+        },
         durability: options.durable,
         code_version: CODE_VERSION.to_owned(),
         alone: options.alone,

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use socrates_kit::LocalBlobs;
 use socrates_link::{Overflow, keys};
-use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus};
+use socrates_model::wire::{Notice, Priority, ScenarioSpec, ScenarioStatus};
 use socrates_model::{Digest, ScenarioEnd, ScenarioId};
 use socrates_store::Reader;
 use tokio::time::Instant;
@@ -158,7 +158,7 @@ async fn follow(
         .subscribe(keys::EVENTS, 4096, Overflow::DropOldest)
         .await
         .map_err(|why| Complaint::resumes(why.to_string()))?;
-    submit(bus.as_ref(), BATCH, specs).await?;
+    submit(bus.as_ref(), BATCH, Priority::Normal, specs).await?;
     // Listened to all the time: a signal between two rounds must not get lost.
     let mut signals = Signals::listen()?;
     let mut last_heard = Instant::now();

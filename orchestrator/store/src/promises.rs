@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::job::{Artifact, Stage};
-use socrates_model::wire::{Acquire, Acquired, Outcome, Report, ScenarioSpec, Submit};
+use socrates_model::wire::{Acquire, Acquired, Outcome, Priority, Report, ScenarioSpec, Submit};
 use socrates_model::{Digest, ScenarioId, Verdict};
 use socrates_orchestrator::{Answer, Effect, Event, JobState, Policy, Row, Snapshot, State, step};
 
@@ -68,7 +68,7 @@ fn rows(effects: &[Effect]) -> Vec<Row> {
 }
 
 fn submit(state: &mut State, id: &str) -> Vec<Row> {
-    let submit = Submit { batch: "b".to_owned(), scenarios: vec![scenario(id)] };
+    let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![scenario(id)] };
     rows(&step(state, Event::Submit { submit, to: 0 }, 0))
 }
 

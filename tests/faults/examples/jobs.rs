@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use socrates_author::{Asking, AuthorContext};
 use socrates_kit::KitError;
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquire, Acquired, Grant, Hello, Outcome, Report, ScenarioSpec, Submit, Welcome};
+use socrates_model::wire::{Acquire, Acquired, Grant, Hello, Outcome, Priority, Report, ScenarioSpec, Submit, Welcome};
 use socrates_model::{Digest, FailureClass, Fault, FaultCode, PlannerName, ScenarioId};
 use socrates_orchestrator::{Answer, Effect, Event, Policy, State, step};
 use socrates_prompts::Style;
@@ -34,7 +34,10 @@ impl Machine {
             review: false,
             order: None,
         };
-        machine.send(|to| Event::Submit { submit: Submit { batch: "b".to_owned(), scenarios: vec![spec] }, to });
+        machine.send(|to| Event::Submit {
+            submit: Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![spec] },
+            to,
+        });
         let ask = Acquire {
             req_id: "q".to_owned(),
             instance: "worker-1".to_owned(),

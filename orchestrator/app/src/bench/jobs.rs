@@ -16,7 +16,7 @@ use socrates_kit::{Blobs, Done, Failure, Job, LocalBlobs, Output, Stage, WorkerC
 use socrates_link::Bus;
 use socrates_link::rules::Role as Part;
 use socrates_model::job::Stage as StageName;
-use socrates_model::wire::ScenarioSpec;
+use socrates_model::wire::{Priority, ScenarioSpec};
 use socrates_model::{PlannerName, Role, ScenarioId, Verdict};
 
 use super::machine;
@@ -256,7 +256,7 @@ async fn alone(bus: &dyn Bus, spec: &ScenarioSpec) -> Result<f64, Complaint> {
     for one in named(spec, "alone", u32::try_from(ALONE).unwrap_or(u32::MAX))? {
         let before = calls::status(bus, u32::MAX).await.map_err(|why| super::ours(why.to_string()))?.done;
         let begun = Instant::now();
-        calls::submit(bus, "alone", vec![one]).await?;
+        calls::submit(bus, "alone", Priority::Normal, vec![one]).await?;
         // Asked as often as it answers: a pause would be measured with it.
         while calls::status(bus, u32::MAX).await.is_ok_and(|reply| reply.done == before) {
             if begun.elapsed() > START {
@@ -290,7 +290,7 @@ async fn stream(bus: &dyn Bus, spec: &ScenarioSpec, scenarios: u32, orchestrator
     let before = standing().await.unwrap_or_default();
     let cpu_before = machine::cpu_s(orchestrator);
     let begun = Instant::now();
-    let handed_in = calls::submit(bus, "stream", named(spec, "stream", scenarios)?);
+    let handed_in = calls::submit(bus, "stream", Priority::Normal, named(spec, "stream", scenarios)?);
     let mut samples = Vec::new();
     let looked = async {
         loop {

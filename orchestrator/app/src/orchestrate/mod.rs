@@ -59,6 +59,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) cents_per_scenario: u64,
     /// Prices of a million tokens in and out by model, in millionths.
     pub(crate) prices: std::collections::BTreeMap<String, (u64, u64)>,
+    /// Share of a stage's attempts above which failures in passing let it rest, percent; 0 never does.
+    pub(crate) circuit_percent: u32,
     /// What a commit of the job store outlives.
     pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
@@ -100,6 +102,7 @@ pub(crate) async fn serve(
         prices: config.prices,
         tokens_per_minute: config.author_rates.0,
         requests_per_minute: config.author_rates.1,
+        circuit_percent: config.circuit_percent,
         ..Policy::default().asking_again(config.asks_again)
     };
     let (store, state) = loop {

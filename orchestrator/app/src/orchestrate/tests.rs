@@ -9,8 +9,8 @@ use socrates_kit::{LocalBlobs, Stop};
 use socrates_link::{Bus, MemoryBus, Overflow, call, decode, keys};
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatReply, Control, Grant, Hello, NoWork, Notice, Outcome, Recorded, Report, ScenarioSpec,
-    StatusAsk, StatusReply, Submit, Submitted, Welcome,
+    Acquire, Acquired, Beat, BeatReply, Control, Grant, Hello, NoWork, Notice, Outcome, Priority, Recorded, Report,
+    ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted, Welcome,
 };
 use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 use tokio::sync::watch;
@@ -42,6 +42,7 @@ async fn open(dir: &Path) -> Site {
         author_budget: (0, 0),
         cents_per_scenario: 0,
         prices: std::collections::BTreeMap::new(),
+        circuit_percent: 0,
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
         alone: false,
@@ -82,7 +83,7 @@ impl Site {
     }
 
     async fn submit(&self, id: &str) -> Submitted {
-        let submit = Submit { batch: "b".to_owned(), scenarios: vec![self.spec(id)] };
+        let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![self.spec(id)] };
         self.ask(keys::SUBMIT, &submit).await
     }
 
@@ -225,7 +226,7 @@ async fn what_cannot_be_read_is_refused_with_a_reason() {
     }
     let mut spec = site.spec("a");
     spec.location = Digest::of(b"not there");
-    let submit = Submit { batch: "b".to_owned(), scenarios: vec![spec] };
+    let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![spec] };
     let answer: Submitted = site.ask(keys::SUBMIT, &submit).await;
     assert!(matches!(answer, Submitted::Refused { why } if why.contains("location")));
     let requeue = Control::Requeue(ScenarioId::new("nobody").unwrap());
@@ -251,6 +252,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         author_budget: (0, 0),
         cents_per_scenario: 0,
         prices: std::collections::BTreeMap::new(),
+        circuit_percent: 0,
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
         alone: false,

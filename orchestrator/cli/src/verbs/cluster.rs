@@ -10,6 +10,7 @@ use socrates_app::config::Config;
 use socrates_app::keep::Keep;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
+use socrates_model::wire::Priority;
 
 use super::keys::{Keys, MakeKeys};
 use super::run::Options;
@@ -80,6 +81,10 @@ struct Submit {
     /// Name of the batch; without one it is called after what it is made from.
     #[arg(long)]
     batch: Option<String>,
+    /// How urgent it is beside other batches: `interactive`, `normal` or `bulk`. While all wait, ten scenarios of one are begun for each
+    /// of the next; none waits for ever.
+    #[arg(long, default_value = "normal")]
+    priority: Priority,
     /// Options of `run`; those that are for this machine are refused.
     #[command(flatten)]
     options: Options,
@@ -114,10 +119,10 @@ impl Cluster {
             }
             ClusterVerb::Worker(verb) => verb.act(config).await,
             ClusterVerb::Keys(verb) => verb.act(talk),
-            ClusterVerb::Submit(Submit { requests, at, batch, options }) => {
+            ClusterVerb::Submit(Submit { requests, at, batch, priority, options }) => {
                 let At { connect, namespace, keys } = at.clone();
                 let config = &keys.over(config)?;
-                let to = SubmitOptions { connect, namespace, batch: batch.clone() };
+                let to = SubmitOptions { connect, namespace, batch: batch.clone(), priority: *priority };
                 cluster::submit(talk, config, requests, &to, &options.values()).await
             }
             ClusterVerb::Collect(Collect { at, batch, out, keep }) => {
