@@ -6,6 +6,7 @@
 
 mod beside;
 mod collect;
+pub(crate) mod dead;
 mod files;
 mod page;
 mod read;
@@ -14,7 +15,7 @@ mod whole;
 pub(crate) use files::{PACKED, archive, unpack_beside};
 pub(crate) use page::page;
 pub(crate) use read::{changed, commands, file, is_bundle, manifest, read, read_some, reports, reports_in};
-pub(crate) use whole::{copy, damaged, moved, whole};
+pub(crate) use whole::{copy, copy_dead, damaged, moved, whole};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -47,7 +47,13 @@ impl Finished<'_> {
         let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
         let history = History::of_rows(rows);
-        conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch, work, alone, keep })
+        let past = Past { status: &status, jobs: history.of(id), fetch, work, alone, keep };
+        let made = conclude(dir, prepared, seed, &past);
+        // One of several that could not be made leaves behind what makes it again; a single one is told at once.
+        if let (Err(why), Some(library), false) = (&made, dir.parent(), alone) {
+            bundle::dead::write(library, prepared, seed, &past, why)?;
+        }
+        made
     }
 }
 

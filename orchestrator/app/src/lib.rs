@@ -73,6 +73,7 @@ mod order;
 pub mod output;
 mod place;
 mod prepare;
+mod prices;
 pub mod process;
 mod progress;
 pub mod query;

@@ -106,6 +106,8 @@ impl Piece<'_> {
     /// Brings the bundle into the library and hands back its card; none where the scenario failed.
     fn bring(&self, root: &Path, work: &Path, moves: bool) -> Result<Option<Card>, Complaint> {
         if self.row.verdict == ScenarioEnd::Failed {
+            let dead = |library: &Path| library.join(bundle::dead::FOLDER).join(self.row.scenario.as_str());
+            bundle::copy_dead(&dead(self.from), &dead(root), work)?;
             return Ok(None);
         }
         if self.row.bundle.is_empty() {

@@ -167,7 +167,7 @@ pub(crate) fn prepare_text(
     if author == AuthorSpec::Offline && !pins.contains_key(&Role::Proposal) && !pins.contains_key(&Role::Paths) {
         check_ways(&reading, &request, &location, shown)?;
     }
-    crate::cost::check_limit(config, &author)?;
+    crate::prices::check_limit(config, &author)?;
     let long = socrates_prompts::too_long(&request);
     // Rules read the whole request; whoever is asked in messages would not see its end.
     if author != AuthorSpec::Offline && !long.is_empty() {

@@ -38,18 +38,19 @@ impl Wrong {
 /// # Errors
 /// A folder that holds no bundle, or cannot be read.
 pub fn verify(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Complaint> {
-    let (mut there, mut gone): (Vec<PathBuf>, Vec<PathBuf>) = (Vec::new(), Vec::new());
+    let (mut there, mut gone, mut lines): (Vec<PathBuf>, Vec<PathBuf>, usize) = (Vec::new(), Vec::new(), 0);
     for folder in folders {
         if bundle::is_bundle(folder) {
             there.push(folder.clone());
             continue;
         }
-        let (found, missing) = of_library(folder)?;
-        if found.is_empty() && missing.is_empty() {
+        let found = of_library(folder)?;
+        if found.there.is_empty() && found.gone.is_empty() && found.lines == 0 {
             return Err(batch::none(folder));
         }
-        there.extend(found);
-        gone.extend(missing);
+        there.extend(found.there);
+        gone.extend(found.gone);
+        lines += found.lines;
     }
     let mut progress = Progress::new(*talk, "checking", there.len());
     let mut done = 0;
@@ -64,18 +65,28 @@ pub fn verify(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Complaint> {
         talk.line(&format!("wrong      {}: {}", dir.display(), wrong.told()));
     }
     let count = there.len() + gone.len();
-    talk.line(&format!("checked    {} · {} wrong", plural(count, "bundle"), found.len()));
+    let without = if lines > 0 { format!(" and {} without one", plural(lines, "scenario")) } else { String::new() };
+    talk.line(&format!("checked    {}{without} · {} wrong", plural(count, "bundle"), found.len()));
     if !found.is_empty() {
         talk.line("next       remove what is wrong and run the command that made it again: it makes what lacks");
     }
     let listed =
         |(dir, wrong): &(&PathBuf, Wrong)| json!({ "bundle": dir.display().to_string(), "wrong": wrong.told() });
-    talk.result(&json!({ "checked": count, "wrong": found.iter().map(listed).collect::<Vec<_>>() }));
+    talk.result(&json!({ "checked": count, "without": lines, "wrong": found.iter().map(listed).collect::<Vec<_>>() }));
     Ok(if found.is_empty() { Code::Ok } else { Code::Input })
 }
 
-/// Bundles of a folder, and those that its list names and that are not there.
-fn of_library(root: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Complaint> {
+/// What a library holds.
+struct Holds {
+    /// Its bundles.
+    there: Vec<PathBuf>,
+    /// Those that its list names and that are not there.
+    gone: Vec<PathBuf>,
+    /// Scenarios whose bundles it does not keep; their lines were read.
+    lines: usize,
+}
+
+fn of_library(root: &Path) -> Result<Holds, Complaint> {
     let found: BTreeSet<String> = batch::bundles(root)?.into_iter().collect();
     let listed = if root.join(library_index::FILE).is_file() { Some(library_index::read_whole(root)?) } else { None };
     let rows = listed.into_iter().flat_map(|library| library.scenarios);
@@ -86,7 +97,7 @@ fn of_library(root: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), Complaint> {
         found.contains(name) || row.bundle.is_empty() && kept.contains(name)
     };
     let gone = made.filter(|row| !there(row)).map(|row| root.join(row.scenario.as_str())).collect();
-    Ok((found.iter().map(|name| root.join(name)).collect(), gone))
+    Ok(Holds { there: found.iter().map(|name| root.join(name)).collect(), gone, lines: kept.len() })
 }
 
 fn wrong(dir: &Path) -> Option<Wrong> {

@@ -65,14 +65,14 @@ fn scripts_for_slurm_and_those_beside_this_test_pass_a_linter_of_shells() {
 #[test]
 fn shards_in_slurm_outlive_the_end_of_their_time_a_dead_machine_and_a_kill() {
     let folder = tempfile::tempdir().unwrap();
-    let Some(seen) = saw(folder.path(), "shards.sh", &script("stand_in.sh"), &["requests", "--variants", "200"]) else {
+    let Some(seen) = saw(folder.path(), "shards.sh", &script("stand_in.sh"), &["requests", "--variants", "400"]) else {
         return;
     };
     assert_taken_up_again(&seen);
     let library = folder.path().join("work/library");
     let made: BTreeSet<String> =
         std::fs::read_dir(library).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    assert_eq!(made, (0..200).map(|one| format!("scenario-{one}")).collect::<BTreeSet<_>>());
+    assert_eq!(made, (0..400).map(|one| format!("scenario-{one}")).collect::<BTreeSet<_>>());
     // The one that was told had all the time to end what it had begun: longer than Slurm waits before it kills.
     let log = folder.path().join(format!("work/socrates-{}_{}.log", seen["job"], seen["told"]));
     let log = std::fs::read_to_string(log).unwrap();

@@ -95,8 +95,8 @@ async fn ask(socket: &mut WebSocketStream<MaybeTlsStream<TcpStream>>, question: 
     }
 }
 
-/// Acknowledged frames per second of a page that shows so many agents.
-async fn case(browser: &Path, agents: u32) -> f64 {
+/// Acknowledged frames per second of a page that shows so many agents, processor time of the gateway, s a second, and its memory, MB.
+async fn case(browser: &Path, agents: u32) -> (f64, f64, f64) {
     let server = Server::start("gateway", agents);
     let browser = Browser::start(browser);
     let mut socket = browser.connect().await;
@@ -108,7 +108,7 @@ async fn case(browser: &Path, agents: u32) -> f64 {
     ask(&mut socket, json!({ "id": 3, "sessionId": session, "method": "Network.enable" })).await;
     let page = json!({ "url": format!("http://{}/run/{RUN}", server.at) });
     ask(&mut socket, json!({ "id": 4, "sessionId": session, "method": "Page.navigate", "params": page })).await;
-    let (begun, mut acks) = (Instant::now(), 0_u32);
+    let (begun, cpu_s, mut acks) = (Instant::now(), server.cpu_s(), 0_u32);
     while begun.elapsed() < WARM + MEASURED {
         let Ok(Some(Ok(message))) = tokio::time::timeout(MEASURED, socket.next()).await else { break };
         let Message::Text(text) = message else { continue };
@@ -117,7 +117,8 @@ async fn case(browser: &Path, agents: u32) -> f64 {
         let ack = told["method"] == "Network.webSocketFrameSent" && told["params"]["response"]["opcode"] == 2;
         acks += u32::from(ack && begun.elapsed() >= WARM);
     }
-    f64::from(acks) / MEASURED.as_secs_f64()
+    let used = (server.cpu_s() - cpu_s) / begun.elapsed().as_secs_f64();
+    (f64::from(acks) / MEASURED.as_secs_f64(), used, server.peak_mb())
 }
 
 fn main() {
@@ -135,9 +136,10 @@ fn main() {
         println!("not measured: there is no chromium on this machine");
         return;
     };
-    println!("| agents x 20 Hz | acknowledged frames/s |");
-    println!("|---|---|");
+    println!("| agents x 20 Hz | acknowledged frames/s | CPU of the gateway | its memory, MB |");
+    println!("|---|---|---|---|");
     for agents in [50, 1_000, 10_000] {
-        println!("| {agents} | {:.1} |", runtime.block_on(case(&browser, agents)));
+        let (frames, cpu, peak_mb) = runtime.block_on(case(&browser, agents));
+        println!("| {agents} | {frames:.1} | {:.1} % | {peak_mb:.0} |", cpu * 100.0);
     }
 }

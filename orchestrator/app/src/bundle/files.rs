@@ -129,9 +129,11 @@ fn unpacked(file: &Path, further: impl Fn(&str) -> bool) -> Result<BTreeMap<Stri
         let go_on = further(&name);
         files.insert(name, bytes);
         if !go_on {
-            break;
+            return Ok(files);
         }
     }
+    // The sum over all of it stands behind the last file.
+    std::io::copy(&mut archive.into_inner(), &mut std::io::sink()).map_err(|why| bad(why.to_string()))?;
     Ok(files)
 }
 

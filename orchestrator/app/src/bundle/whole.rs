@@ -64,6 +64,19 @@ pub(crate) fn moved(from: &Path, to: &Path) -> bool {
     }
 }
 
+/// Copies what is left of a scenario that could not be made; none where nothing is. `from`, `to`: its folders in the shard and in the library.
+pub(crate) fn copy_dead(from: &Path, to: &Path, work: &Path) -> Result<(), Complaint> {
+    if !from.is_dir() || to.exists() {
+        return Ok(());
+    }
+    let name = to.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let beside = Beside::new(work, &format!("dead-{name}"))?;
+    tree(from, &beside.0, DEPTH).map_err(|why| {
+        Complaint::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
+    })?;
+    beside.appear(to)
+}
+
 /// Copies files and folders; what is neither is left out.
 fn tree(from: &Path, to: &Path, depth: usize) -> std::io::Result<()> {
     std::fs::create_dir_all(to)?;

@@ -15,7 +15,7 @@ use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::in_process::{self, Made};
 use crate::replay::tracks::{self, Known};
-use crate::{agents, bt, cost, layout, map, prepare};
+use crate::{agents, bt, layout, map, prepare, prices};
 
 /// An agents file of our own.
 const AGENTS: &str = include_str!("agents.yaml");
@@ -391,7 +391,7 @@ fn open_prices(
     _bytes: &[u8],
     _chance: &mut Chance,
 ) -> Result<(), Complaint> {
-    cost::read_prices(&folder.join(&sample.file)).map(drop)
+    prices::read_prices(&folder.join(&sample.file)).map(drop)
 }
 
 fn imports(kit: &Kit) -> Vec<Sample> {

@@ -11,6 +11,7 @@ use socrates_stream::{StreamError, mcap};
 
 use super::bags;
 use super::lines::{self, FoundBy};
+use crate::bundle;
 use crate::exit::Complaint;
 
 /// Radii that are believed, m.
@@ -70,7 +71,7 @@ pub(crate) fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Complaint
     let name = path.display().to_string();
     match bags::at(path)? {
         Some(bag) => score_bag(&name, bag, known).map(Some),
-        None if path.is_dir() => Ok(None),
+        None if path.is_dir() || bundle::is_bundle(path) => Ok(None),
         None => score(&name, &bags::bytes(path)?, known).map(Some),
     }
 }

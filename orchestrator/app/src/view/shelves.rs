@@ -47,7 +47,7 @@ impl Place {
     /// Reads what a person named.
     pub(super) fn of(what: &str) -> Result<Self, Complaint> {
         let path = Path::new(what);
-        if path.is_dir() {
+        if path.is_dir() || bundle::is_bundle(path) {
             return Ok(Self::Folder(path.to_path_buf()));
         }
         if what.contains('/') && endpoint(what).is_some() {
