@@ -156,12 +156,7 @@ impl Batch<'_> {
             Happening::Done { of, life, fence } => self.done(of, life, fence),
             Happening::Dies { of, life, fence } => self.dies(of, life, fence),
             Happening::Beats { of, life } => self.beats(of, life),
-            Happening::Starts(of) => {
-                if let Some(worker) = self.workers.get_mut(of) {
-                    worker.start();
-                }
-                self.next(of);
-            }
+            Happening::Starts(of) => self.starts(of),
             Happening::Gone(instance) => self.steps(|_| Event::Gone { instance }),
             Happening::Ticks => self.ticks(),
             Happening::Rises => {
@@ -265,6 +260,14 @@ impl Batch<'_> {
         self.workers.get_mut(of).filter(|worker| worker.alive && worker.life == life)
     }
 
+    fn starts(&mut self, of: usize) {
+        let Some(worker) = self.workers.get_mut(of) else { return };
+        worker.start();
+        let life = worker.life;
+        self.next(of);
+        self.plan(self.beat_ms, Happening::Beats { of, life });
+    }
+
     fn send(&mut self, of: usize, ask: u64, message: Message) {
         let Some(worker) = self.workers.get(of) else { return };
         if worker.cut_until > self.now {
@@ -338,22 +341,14 @@ impl Batch<'_> {
             self.ledger.struck(&key, Kind::Partition, since);
         }
         worker.work = Some(Work { grant, fate, place, reported: false });
-        let beats = !std::mem::replace(&mut worker.beats, true);
         match dies_ms {
             Some(ms) => self.plan(ms, Happening::Dies { of, life, fence }),
             None => self.plan(works_ms, Happening::Done { of, life, fence }),
         }
-        if beats {
-            self.plan(self.beat_ms, Happening::Beats { of, life });
-        }
     }
 
     fn beats(&mut self, of: usize, life: u32) {
-        let Some(worker) = self.living(of, life) else { return };
-        let Some(beat) = worker.beat() else {
-            worker.beats = false;
-            return;
-        };
+        let Some(beat) = self.living(of, life).map(|worker| worker.beat()) else { return };
         self.send(of, 0, beat);
         self.plan(self.beat_ms, Happening::Beats { of, life });
     }

@@ -48,5 +48,5 @@ pub use head::Step;
 pub use kind::Kind;
 pub use ledger::{AttemptRow, Safety, ScenarioRow};
 pub use problems::checked;
-pub use results::{CellResult, Figures, Pairing, Played, Unit, play, units};
+pub use results::{CellResult, Figures, Limited, Pairing, Played, Unit, limited, play, units};
 pub use spec::{Cell, Spec};

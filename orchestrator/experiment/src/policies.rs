@@ -17,10 +17,9 @@ pub enum Told {
 }
 
 /// A retry policy.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RetryPolicy {
     /// Name in tables.
-    #[serde(skip)]
     pub name: String,
     /// What it does, in a sentence.
     pub about: String,
@@ -39,7 +38,6 @@ pub struct RetryPolicy {
     /// Whether a pause is drawn evenly from zero to its length.
     pub jitter: bool,
     /// Tries at a job at most, whatever `tries` of the specification says.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub most_tries: Option<u32>,
     /// Lease of a job, ms.
     pub lease_ms: u64,

@@ -1,5 +1,7 @@
 //! What came of each cell: shares with intervals, tries, tokens, times, and the difference to the first policy pair by pair.
 
+use std::collections::BTreeMap;
+
 use socrates_stats::{Interval, Z_95, kaplan_meier, mcnemar, paired_difference, quantile, restricted_mean, wilson};
 
 use crate::draws::float;
@@ -95,6 +97,39 @@ pub struct Pairing {
     pub p: f64,
 }
 
+/// Means up to a limit that a cell shares with those which it is compared with: the most that any of their realised scenarios took.
+/// A scenario that is not realised counts with the whole limit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limited {
+    /// Mean number of questions to authors until a scenario is realised.
+    pub asks: f64,
+    /// Its limit.
+    pub asks_limit: f64,
+    /// Mean time until a scenario is realised, s.
+    pub time_s: f64,
+    /// Its limit.
+    pub time_limit_s: f64,
+}
+
+/// The limited means of every cell.
+#[must_use]
+pub fn limited(results: &[CellResult]) -> Vec<Limited> {
+    let mut limits: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for one in results {
+        let limit = limits.entry(one.cell.base).or_default();
+        for row in one.realised() {
+            limit.0 = limit.0.max(float(row.asks));
+            limit.1 = limit.1.max(row.span_ms().map_or(0.0, seconds));
+        }
+    }
+    let of = |one: &CellResult| {
+        let (asks_limit, time_limit_s) = limits.get(&one.cell.base).copied().unwrap_or_default();
+        let asks = restricted_mean(&one.open_after_asks(), asks_limit);
+        Limited { asks, asks_limit, time_s: restricted_mean(&one.open_after_s(), time_limit_s), time_limit_s }
+    };
+    results.iter().map(of).collect()
+}
+
 /// A share that nothing is known of.
 const UNKNOWN: Interval = Interval { estimate: 0.0, low: 0.0, high: 1.0 };
 
@@ -173,12 +208,6 @@ impl CellResult {
             })
             .collect();
         kaplan_meier(&watched).unwrap_or_default()
-    }
-
-    /// Mean number of asks until a scenario is realised, of those up to this limit.
-    #[must_use]
-    pub fn mean_asks(&self, limit: f64) -> f64 {
-        restricted_mean(&self.open_after_asks(), limit)
     }
 
     /// It beside the result of the first policy.

@@ -3,7 +3,7 @@
 use socrates_model::wire::Recorded;
 
 use crate::ledger::{AttemptRow, ScenarioRow};
-use crate::results::{CellResult, Figures, Pairing};
+use crate::results::{CellResult, Figures, Limited, Pairing};
 
 /// Columns of `attempts.csv`. Times are virtual, ms after the batch was submitted.
 pub const ATTEMPTS: &str =
@@ -12,7 +12,7 @@ pub const ATTEMPTS: &str =
 pub const SCENARIOS: &str =
     "cell,scenario,result,realised,first_cut,begun_ms,ended_ms,attempts,asks,jobs,tokens_in,tokens_out";
 /// Columns of `cells.csv`.
-pub const CELLS: &str = "cell,workload,fault,rate,tries,policy,scenarios,realised,success,success_low,success_high,first_cut,first_cut_low,first_cut_high,attempts,jobs,amplification,asks,tokens_in,tokens_out,tokens_per_realised,time_p50_s,time_p95_s,recoveries,recovery_p50_s,recovery_p95_s,recovery_p99_s,only_first_policy,only_this_policy,difference,difference_low,difference_high,mcnemar_p,lost,doubled,complaints,first_complaint";
+pub const CELLS: &str = "cell,workload,fault,rate,tries,policy,scenarios,realised,success,success_low,success_high,first_cut,first_cut_low,first_cut_high,attempts,jobs,amplification,asks,tokens_in,tokens_out,tokens_per_realised,time_p50_s,time_p95_s,mean_asks,mean_asks_limit,mean_time_s,mean_time_limit_s,recoveries,recovery_p50_s,recovery_p95_s,recovery_p99_s,only_first_policy,only_this_policy,difference,difference_low,difference_high,mcnemar_p,lost,doubled,complaints,first_complaint";
 
 /// A number with four digits after the point.
 fn real(value: f64) -> String {
@@ -77,7 +77,7 @@ pub fn scenario(cell: usize, row: &ScenarioRow) -> Vec<String> {
 
 /// A row of `cells.csv`.
 #[must_use]
-pub fn cell(result: &CellResult, figures: &Figures, pairing: Option<&Pairing>) -> Vec<String> {
+pub fn cell(result: &CellResult, figures: &Figures, means: &Limited, pairing: Option<&Pairing>) -> Vec<String> {
     let cell = &result.cell;
     let [tokens_in, tokens_out] = figures.tokens.map(|tokens| tokens.to_string());
     let [p50, p95, p99] = figures.recovery_s.map_or_else(Default::default, |times| times.map(real));
@@ -106,6 +106,10 @@ pub fn cell(result: &CellResult, figures: &Figures, pairing: Option<&Pairing>) -
         maybe(figures.tokens_per_success(), |tokens| format!("{tokens:.0}")),
         maybe(figures.time_s, |(p50, _)| real(p50)),
         maybe(figures.time_s, |(_, p95)| real(p95)),
+        real(means.asks),
+        real(means.asks_limit),
+        real(means.time_s),
+        real(means.time_limit_s),
         result.recoveries.len().to_string(),
         p50,
         p95,

@@ -1,5 +1,4 @@
-//! A simulated worker process: one job at a time, questions that are sent again until an answer comes, beats while it holds
-//! something.
+//! A simulated worker process: one job at a time, questions that are sent again until an answer comes, beats as long as it lives.
 
 use socrates_model::Digest;
 use socrates_model::Role;
@@ -56,8 +55,6 @@ pub(crate) struct Worker {
     pub(crate) queue: Vec<Grant>,
     /// Until when nothing that it sends or is sent gets through.
     pub(crate) cut_until: u64,
-    /// Whether its next beat is due.
-    pub(crate) beats: bool,
     /// Whether a hint came while a question was under way, so that its "no work" may be old.
     pub(crate) hinted: bool,
 }
@@ -76,7 +73,6 @@ impl Worker {
             work: None,
             queue: Vec::new(),
             cut_until: 0,
-            beats: false,
             hinted: false,
         }
     }
@@ -92,7 +88,6 @@ impl Worker {
     pub(crate) fn die(&mut self) -> Option<Work> {
         self.alive = false;
         self.waits = None;
-        self.beats = false;
         self.hinted = false;
         self.queue.clear();
         self.cut_until = 0;
@@ -115,14 +110,13 @@ impl Worker {
         })
     }
 
-    /// Its beat; none where it holds nothing.
-    pub(crate) fn beat(&self) -> Option<Message> {
+    /// Its beat.
+    pub(crate) fn beat(&self) -> Message {
         let grants = self.work.iter().map(|work| &work.grant).chain(&self.queue);
         let held: Vec<Held> = grants
             .map(|grant| Held { key: grant.spec.key.clone(), attempt: grant.attempt, fence: grant.fence, progress: 0 })
             .collect();
-        let beat = || Message::Beat(Beat { instance: self.instance.clone(), held: held.clone(), draining: false });
-        (!held.is_empty()).then(beat)
+        Message::Beat(Beat { instance: self.instance.clone(), held, draining: false })
     }
 
     /// Whether it knows this grant already.

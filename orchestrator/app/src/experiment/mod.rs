@@ -12,8 +12,8 @@ mod page;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use socrates_experiment::plots::{Plot, plots};
-use socrates_experiment::{CellResult, Figures, Pairing, Spec, checked, play, tables, units};
+use socrates_experiment::plots::plots;
+use socrates_experiment::{CellResult, Figures, Limited, Pairing, Spec, checked, limited, play, tables, units};
 use socrates_model::Digest;
 use socrates_stream::csv::joined;
 
@@ -30,7 +30,7 @@ const ROUND: usize = 64;
 /// Cells that are told a line each; more are left to the page.
 const TOLD: usize = 40;
 /// Where specifications come in.
-const DOOR: Door = Door {
+pub(crate) const DOOR: Door = Door {
     what: "experiment",
     shipped: &[
         ("reliability", include_str!("../../../../prompts/protocols/reliability.toml")),
@@ -64,28 +64,28 @@ struct Done {
 /// A specification that cannot be read or done; a folder that cannot be written to; a result that was lost or doubled, or a state
 /// that the checker complains of, with a code of its own, after everything is written.
 pub fn experiment(talk: &Printer, options: &ExperimentOptions) -> Result<(), Complaint> {
-    let mut spec: Spec = DOOR.read(&options.spec)?;
-    spec.scenarios = options.scenarios.unwrap_or(spec.scenarios);
-    let spec = checked(spec).map_err(|problems| DOOR.refused(&options.spec, problems))?;
+    let spec = load(&options.spec, options.scenarios)?;
     let cells = plural(spec.cells().len(), "cell");
     talk.line(&format!("experiment {}: {cells} of {}", spec.title, plural(spec.scenarios as usize, "scenario")));
     let done = played(talk, &spec);
     let figures: Vec<Figures> = done.results.iter().map(CellResult::figures).collect();
     let pairings: Vec<Option<Pairing>> =
         done.results.iter().map(|one| done.results.get(one.cell.base).and_then(|first| one.beside(first))).collect();
+    let means = limited(&done.results);
     let plots = plots(&spec, &done.results, &figures);
     let again = format!("socrates experiment {}", files::shell(&options.out.join("spec.lock.toml")));
     let told = page::Told {
         spec: &spec,
         results: &done.results,
         figures: &figures,
+        means: &means,
         pairings: &pairings,
         plots: &plots,
         again: &again,
         attempts_left_out: done.attempts_left_out,
     };
     let page = page::html(&told);
-    write(&options.out, &spec, &done, (&figures, &pairings), &plots, &page)?;
+    write(&options.out, &told, &done.attempts, &page)?;
     tell(talk, &done.results, &figures);
     talk.line(&format!("look       {}", options.out.join("report.html").display()));
     let object = json!({
@@ -101,6 +101,13 @@ pub fn experiment(talk: &Printer, options: &ExperimentOptions) -> Result<(), Com
     let hint = "this is a fault of ours: please report it with spec.lock.toml, which does it again";
     Err(Complaint { causes: bad, result: Some(Box::new(object)), ..Complaint::input(what, hint) }
         .with_code(Code::Unsafe))
+}
+
+/// A specification with every default, and so many scenarios of each cell where that is said.
+pub(crate) fn load(from: &Path, scenarios: Option<u32>) -> Result<Spec, Complaint> {
+    let mut spec: Spec = DOOR.read(from)?;
+    spec.scenarios = scenarios.unwrap_or(spec.scenarios);
+    checked(spec).map_err(|problems| DOOR.refused(from, problems))
 }
 
 /// Plays every unit on every core; results are added up in order, so that nobody can see how many cores there were.
@@ -138,32 +145,27 @@ fn played(talk: &Printer, spec: &Spec) -> Done {
 }
 
 /// Writes every file; the page last.
-fn write(
-    out: &Path,
-    spec: &Spec,
-    done: &Done,
-    (figures, pairings): (&[Figures], &[Option<Pairing>]),
-    plots: &[Plot],
-    page: &str,
-) -> Result<(), Complaint> {
+fn write(out: &Path, told: &page::Told<'_>, attempts: &[String], page: &str) -> Result<(), Complaint> {
     let with_head = |head: &str, lines: Vec<String>| format!("{head}\n{}\n", lines.join("\n"));
     let rows = |one: &CellResult| -> Vec<String> {
         one.scenarios.iter().map(|row| joined(tables::scenario(one.cell.number, row))).collect()
     };
-    let scenarios = with_head(tables::SCENARIOS, done.results.iter().flat_map(rows).collect());
-    let cells = done.results.iter().zip(figures).zip(pairings);
-    let cells = cells.map(|((one, figures), pairing)| joined(tables::cell(one, figures, pairing.as_ref())));
-    let cells = with_head(tables::CELLS, cells.collect());
+    let scenarios = with_head(tables::SCENARIOS, told.results.iter().flat_map(rows).collect());
+    let cells = told.results.iter().zip(told.figures).zip(told.means).zip(told.pairings);
+    let cell = |(((one, figures), means), pairing): (((&CellResult, &Figures), &Limited), &Option<Pairing>)| {
+        joined(tables::cell(one, figures, means, pairing.as_ref()))
+    };
+    let cells = with_head(tables::CELLS, cells.map(cell).collect());
     let mut named = vec![("cells.csv", cells), ("scenarios.csv", scenarios)];
-    if spec.attempt_rows > 0 {
-        named.push(("attempts.csv", done.attempts.join("\n") + "\n"));
+    if told.spec.attempt_rows > 0 {
+        named.push(("attempts.csv", attempts.join("\n") + "\n"));
     }
-    let lock = lock(spec, &named)?;
+    let lock = lock(told.spec, &named)?;
     named.push(("spec.lock.toml", lock));
     for (name, text) in &named {
         files::write(&out.join(name), text.as_bytes())?;
     }
-    for plot in plots {
+    for plot in told.plots {
         files::write(&out.join("plots").join(format!("{}.svg", plot.name)), chart::svg(plot).as_bytes())?;
     }
     files::write(&out.join("report.html"), page.as_bytes())

@@ -3,7 +3,7 @@
 use socrates_draw::svg::{escape, escape_code};
 use socrates_experiment::plots::Plot;
 use socrates_experiment::spec::{Cell, Level};
-use socrates_experiment::{CellResult, Figures, Kind, Pairing, Spec};
+use socrates_experiment::{CellResult, Figures, Kind, Limited, Pairing, Spec};
 
 use super::chart;
 use crate::words::plural;
@@ -26,6 +26,7 @@ pub(super) struct Told<'a> {
     pub(super) spec: &'a Spec,
     pub(super) results: &'a [CellResult],
     pub(super) figures: &'a [Figures],
+    pub(super) means: &'a [Limited],
     pub(super) pairings: &'a [Option<Pairing>],
     pub(super) plots: &'a [Plot],
     /// The command that does it again.
@@ -255,7 +256,8 @@ fn tables(told: &Told<'_>) -> String {
     let same = |a: &Cell, b: &Cell| a.workload.name == b.workload.name && a.strike.shown() == b.strike.shown();
     let mut out = String::from(
         "<p class=\"quiet\">In brackets 95 % intervals: Wilson for shares, Bonett and Price for differences; p of McNemar's test. \
-         Times are virtual, from the first attempt of a realised scenario to its end; recovery is from a fault until its job went on.</p>",
+         Times are virtual, from the first attempt of a scenario to its end: the median is that of realised ones; the mean counts those that were not realised \
+         with the longest time that any of the policies beside it took. Recovery is from a fault until its job went on.</p>",
     );
     let mut from = 0;
     while let Some(first) = told.results.get(from) {
@@ -269,7 +271,7 @@ fn tables(told: &Told<'_>) -> String {
         out.push_str(&format!(
             "<h3>{}{}</h3><div class=\"wide\"><table><tr><th>rate</th><th>tries</th><th class=\"name\">policy</th><th>realised, %</th>\
              <th>difference to first, points</th><th>p</th><th>first cut, %</th><th>questions<br>a scenario</th><th>attempts<br>a job</th>\
-             <th>tokens a<br>realised one</th><th>tokens for each<br>further one</th><th>median time, s</th>\
+             <th>tokens a<br>realised one</th><th>tokens for each<br>further one</th><th>median<br>time, s</th><th>mean time, s,<br>within the limit</th>\
              <th>recovery, s<br>50 / 95 / 99 %</th><th>lost, doubled</th></tr>{rows}</table></div>\n",
             escape(&first.cell.workload.name),
             escape(&strike)
@@ -300,7 +302,7 @@ fn row(told: &Told<'_>, place: usize) -> Option<String> {
     let asks = count(figures.asks) / count(result.scenarios.len().max(1) as u64);
     Some(format!(
         "<tr{first}><td>{} %</td><td>{}</td><td class=\"name\">{}</td><td><b>{}</b> ({} to {})</td><td>{difference}</td><td>{p}</td>\
-         <td>{}</td><td>{asks:.2}</td><td>{:.2}</td><td>{}</td><td>{}</td><td>{}</td><td>{recovery}</td><td{class}>{}, {}</td></tr>",
+         <td>{}</td><td>{asks:.2}</td><td>{:.2}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.1}</td><td>{recovery}</td><td{class}>{}, {}</td></tr>",
         // Rates are written as they are given: 2.5 % stays 2.5 %.
         ((cell.rate * 1e6).round() / 1e4),
         cell.policy.tries(cell.tries),
@@ -313,6 +315,7 @@ fn row(told: &Told<'_>, place: usize) -> Option<String> {
         whole(figures.tokens_per_success()),
         whole(pairing.and(figures.tokens_per_saved(base))),
         figures.time_s.map_or_else(String::new, |(p50, _)| format!("{p50:.1}")),
+        told.means.get(place)?.time_s,
         safety.lost,
         safety.doubled,
     ))
