@@ -64,8 +64,10 @@ pub enum Join {
     Straight,
     /// By steps.
     Steps,
-    /// By a dashed line without marks: what theory says.
-    Theory,
+    /// By a dashed line without marks.
+    Dashed,
+    /// By a dotted line without marks.
+    Dotted,
 }
 
 /// A point: across, up, and the interval around it.
@@ -108,7 +110,7 @@ pub fn plots(spec: &Spec, results: &[CellResult], figures: &[Figures]) -> Vec<Pl
         Along::Tries => "the tries that each job is allowed",
     };
     let law = if along == Along::Tries && spec.fault.iter().any(|strike| strike.kinds.is_empty()) {
-        " Dashed: what independent tries would give, 1 - (1 - p)^k for each question. Tries that fail together stay below it; telling the author what was wrong may rise above it."
+        " Dashed: what independent tries would give, 1 - (1 - p)^k for each question; dotted: what tries give that fail together as the model says. Telling the author what was wrong may rise above both."
     } else {
         ""
     };
@@ -289,18 +291,18 @@ fn success(group: &[Done<'_>], at: &At) -> Panel {
 /// What theory says of asking from the beginning.
 fn laws(group: &[Done<'_>], cell: &Cell, correlation: f64) -> Vec<Line> {
     let tries: std::collections::BTreeSet<u32> = group.iter().map(|(result, _)| result.cell.tries).collect();
-    let law = |name: &str, correlation: f64| Line {
+    let law = |name: &str, join: Join, correlation: f64| Line {
         name: name.to_owned(),
         policy: None,
-        join: Join::Theory,
+        join,
         points: tries
             .iter()
             .map(|tries| (f64::from(*tries), expected(&cell.workload, correlation, *tries), None))
             .collect(),
     };
-    let mut laws = vec![law("independent tries", 0.0)];
+    let mut laws = vec![law("independent tries", Join::Dashed, 0.0)];
     if correlation > 0.0 {
-        laws.push(law("correlated tries", correlation));
+        laws.push(law("correlated tries", Join::Dotted, correlation));
     }
     laws
 }

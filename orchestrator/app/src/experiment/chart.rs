@@ -87,12 +87,12 @@ fn color(line: &Line) -> &'static str {
     }
 }
 
-/// How a line is stroked. Lines of theory with and without correlation differ by their dashes.
+/// How a line is stroked.
 fn stroke(line: &Line) -> String {
-    let dashes = match (line.join, line.name.len() % 2) {
-        (Join::Theory, 0) => " stroke-dasharray=\"2 3\"",
-        (Join::Theory, _) => " stroke-dasharray=\"7 4\"",
-        (Join::Straight | Join::Steps, _) => "",
+    let dashes = match line.join {
+        Join::Dashed => " stroke-dasharray=\"7 4\"",
+        Join::Dotted => " stroke-dasharray=\"2 3\"",
+        Join::Straight | Join::Steps => "",
     };
     format!("stroke=\"{}\" stroke-width=\"1.8\"{dashes}", color(line))
 }
@@ -155,16 +155,16 @@ fn draw(svg: &mut Svg, panel: &Panel, at: (f64, f64), width: f64) {
     svg.heading((frame.left, frame.top - 12.0), &title, 13.0, palette::INK);
     axes(svg, &frame);
     let policies = panel.lines.iter().filter(|line| line.policy.is_some()).count();
-    for line in panel.lines.iter().filter(|line| line.join == Join::Theory) {
-        svg.polyline(
-            &line.points.iter().map(|(x, y, _)| (frame.x(*x), frame.y(*y))).collect::<Vec<_>>(),
-            &stroke(line),
-        );
-    }
-    for line in panel.lines.iter().filter(|line| line.join != Join::Theory) {
+    // What theory says lies below what was found.
+    let (found, theory): (Vec<&Line>, Vec<&Line>) = panel.lines.iter().partition(|line| line.policy.is_some());
+    for line in theory.into_iter().chain(found) {
         match line.join {
             Join::Steps => steps(svg, &frame, line),
-            Join::Straight | Join::Theory => points(svg, &frame, line, policies),
+            Join::Straight => points(svg, &frame, line, policies),
+            Join::Dashed | Join::Dotted => {
+                let points: Vec<(f64, f64)> = line.points.iter().map(|(x, y, _)| (frame.x(*x), frame.y(*y))).collect();
+                svg.polyline(&points, &stroke(line));
+            }
         }
     }
 }
@@ -291,7 +291,7 @@ mod tests {
             lines: vec![
                 line("first", Some(0), Join::Straight),
                 line("second", Some(1), Join::Steps),
-                line("law", None, Join::Theory),
+                line("law", None, Join::Dashed),
             ],
         };
         let plot = Plot {
