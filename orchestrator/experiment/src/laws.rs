@@ -67,7 +67,7 @@ fn the_first_cut_is_what_the_workload_says() {
 fn blind_tries_follow_the_law_of_independence_without_correlation_and_fall_below_it_with_some() {
     let mut below = 0;
     for correlation in [0.0, 0.4] {
-        for (result, _) in played(&paper(1_500, &["immediate"], &[1, 2, 4], correlation)) {
+        for (result, _) in played(&paper(800, &["immediate"], &[1, 2, 4], correlation)) {
             let (cell, figures) = (&result.cell, result.figures());
             let said = expected(&cell.workload, correlation, cell.tries);
             // Three standard errors: one false alarm in 370 cells, and the same draws every time.

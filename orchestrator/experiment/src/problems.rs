@@ -51,7 +51,9 @@ fn of(spec: &Spec) -> Vec<String> {
     }
     for strike in &spec.fault {
         let shown = strike.shown();
-        found.name("fault.name", &shown);
+        if !strike.name.is_empty() {
+            found.name("fault.name", &strike.name);
+        }
         if strike.rates.is_empty() {
             found.say(format!("fault `{shown}`: `rates` is empty; at least one is needed"));
         }

@@ -37,7 +37,7 @@ fn a_lost_worker_costs_its_grace_and_a_cut_one_its_lease() {
             "title": "lost", "scenarios": 200, "policies": ["jitter"], "tries": [8],
             "fault": [{ "kinds": [kind], "rates": [0.05] }],
             "durations": { "simulation": { "fixed": 40_000 } },
-            "workers": { "proposal": 64, "paths": 64, "behaviors": 64, "simulation": 64, "scoring": 64 },
+            "workers": { "proposal": 256, "paths": 256, "behaviors": 256, "simulation": 256, "scoring": 64 },
             "times_ms": { "cut": 60_000 },
         }));
         played(&spec)[0].0.figures().recovery_s.unwrap()
