@@ -329,7 +329,11 @@ fn extremes(done: &[Done<'_>], panel: &dyn Fn(&[Done<'_>], String) -> Option<Pan
             let highest = group.iter().map(|(result, _)| result.cell.rate).fold(0.0, f64::max);
             let chosen: Group<'_> = group.iter().filter(|(result, _)| result.cell.rate >= highest).copied().collect();
             let cell = &chosen.first()?.0.cell;
-            let rate = if cell.strike.kinds.is_empty() { String::new() } else { format!(" {} %", 100.0 * highest) };
+            let rate = if cell.strike.kinds.is_empty() {
+                String::new()
+            } else {
+                format!(" {} %", (highest * 1e6).round() / 1e4)
+            };
             panel(&chosen, format!("{}{rate}", heading(cell)))
         })
         .collect()
@@ -373,13 +377,14 @@ fn open_by_seconds(group: &[Done<'_>], title: String) -> Option<Panel> {
 
 fn cost(group: &[Done<'_>], title: String) -> Option<Panel> {
     let thousands = |figures: &Figures| figures.tokens_per_success().map(|tokens| tokens / 1_000.0);
-    let most = group.iter().filter_map(|(_, figures)| thousands(figures)).fold(0.0, f64::max);
+    let all = || group.iter().filter_map(|(_, figures)| thousands(figures));
+    let (least, most) = (all().fold(f64::MAX, f64::min), all().fold(0.0, f64::max));
     let point = |(_, figures): &Done<'_>| {
         let share = figures.success;
         Some((thousands(figures)?, share.estimate, Some((share.low, share.high))))
     };
     let lines = by_policy(group, Join::Straight, &|cells| cells.iter().filter_map(point).collect());
-    let x = axis("thousand tokens for each realised scenario", 0.0, most);
+    let x = axis("thousand tokens for each realised scenario", 0.9 * least, most);
     (most > 0.0).then(|| Panel { title, x, y: shares("realised, %"), lines })
 }
 
@@ -391,7 +396,9 @@ fn recovery(group: &[Done<'_>], title: String) -> Option<Panel> {
         all.sort_by(f64::total_cmp);
         all
     };
-    let to = group.iter().flat_map(|(result, _)| times(result)).fold(0.0, f64::max);
+    let all = || group.iter().flat_map(|(result, _)| times(result));
+    let (least, to) = (all().fold(f64::MAX, f64::min), all().fold(0.0, f64::max));
+    let from = libm::pow(10.0, libm::floor(libm::log10(least.max(0.01))));
     let lines = by_policy(&group, Join::Steps, &|cells| {
         let all = cells.first().map(|(result, _)| times(result)).unwrap_or_default();
         let every = all.len().div_ceil(MOST_POINTS).max(1);
@@ -402,6 +409,6 @@ fn recovery(group: &[Done<'_>], title: String) -> Option<Panel> {
         let last = all.last().map(|_| (to, 1.0, None));
         if points.is_empty() { Vec::new() } else { points.into_iter().chain(last).collect() }
     });
-    let x = Axis { log: true, ..axis("virtual time, s (logarithmic)", 0.01, to.max(0.1)) };
+    let x = Axis { log: true, ..axis("virtual time, s (logarithmic)", from, to.max(10.0 * from)) };
     (to > 0.0).then(|| Panel { title, x, y: shares("went on, %"), lines })
 }

@@ -19,6 +19,8 @@ const LETTER: f64 = 6.6;
 const KEY: (f64, f64) = (34.0, 18.0);
 /// Marks of neighboring policies stand so far apart, px.
 const APART: f64 = 3.0;
+/// Room for marks between the frame and the ends of the axis across, px.
+const INSET: f64 = 16.0;
 /// Half the size of a mark, px.
 const MARK: f64 = 3.6;
 /// Letters of a panel's title at most.
@@ -54,11 +56,11 @@ pub(super) fn svg(plot: &Plot) -> String {
     svg.finish()
 }
 
-/// Names of the legend, row by row: each line once, as the first panel that has it does.
+/// Names of the legend, row by row: each line that is drawn once, as the first panel that has it does.
 fn legend_rows(plot: &Plot, width: f64) -> Vec<Vec<&Line>> {
     let mut lines: Vec<&Line> = Vec::new();
     for line in plot.panels.iter().flat_map(|panel| &panel.lines) {
-        if lines.iter().all(|known| known.name != line.name) {
+        if !line.points.is_empty() && lines.iter().all(|known| known.name != line.name) {
             lines.push(line);
         }
     }
@@ -127,11 +129,13 @@ struct Frame<'a> {
     top: f64,
     width: f64,
     height: f64,
+    /// Room at both ends of the axis across.
+    inset: f64,
 }
 
 impl Frame<'_> {
     fn x(&self, value: f64) -> f64 {
-        self.left + self.width * part(&self.panel.x, value)
+        self.left + self.inset + (self.width - 2.0 * self.inset) * part(&self.panel.x, value)
     }
 
     fn y(&self, value: f64) -> f64 {
@@ -148,8 +152,15 @@ fn part(axis: &Axis, value: f64) -> f64 {
 
 fn draw(svg: &mut Svg, panel: &Panel, at: (f64, f64), width: f64) {
     let [left, right, top, bottom] = MARGINS;
-    let frame =
-        Frame { panel, left: at.0 + left, top: at.1 + top, width: width - left - right, height: HEIGHT - top - bottom };
+    let marked = panel.lines.iter().any(|line| line.join == Join::Straight);
+    let frame = Frame {
+        panel,
+        left: at.0 + left,
+        top: at.1 + top,
+        width: width - left - right,
+        height: HEIGHT - top - bottom,
+        inset: if marked { INSET } else { 0.0 },
+    };
     let title: String = panel.title.chars().take(TITLE).collect();
     let title = if title == panel.title { title } else { format!("{title}…") };
     svg.heading((frame.left, frame.top - 12.0), &title, 13.0, palette::INK);

@@ -198,7 +198,7 @@ fn tell(talk: &Printer, results: &[CellResult], figures: &[Figures]) {
         let fault = if cell.strike.kinds.is_empty() {
             String::new()
         } else {
-            format!("{} {} % · ", cell.strike.shown(), (cell.rate * 1e6).round() / 1e4)
+            format!("{} {} % · ", cell.strike.shown(), page::percent(cell.rate))
         };
         talk.line(&format!(
             "cell       {:<20} {fault}{} tries · {:<12} {} of {} realised ({:.0}–{:.0} %)",

@@ -11,14 +11,14 @@ use crate::words::plural;
 /// The look of the page.
 const STYLE: &str = ":root{color-scheme:light}*{box-sizing:border-box}\
 body{margin:0;background:#f3f5f8;color:#1f2328;font:15px/1.5 Ubuntu,'Segoe UI',Helvetica,Arial,sans-serif}\
-main{max-width:1080px;margin:0 auto;padding:24px 20px}h1{font-size:28px;line-height:1.2;margin:0 0 6px}\
+main{max-width:1380px;margin:0 auto;padding:24px 20px}h1{font-size:28px;line-height:1.2;margin:0 0 6px}\
 h2{font-size:18px;margin:0 0 8px}h3{font-size:15px;margin:18px 0 6px}p{margin:4px 0 8px}\
 section{background:#fff;border:1px solid #dde1e6;border-radius:10px;padding:16px 18px;margin:14px 0}\
 .stamp{border-color:#b3400b;color:#b3400b;font-weight:600}.bad{color:#b3400b;font-weight:600}.good{color:#00795c;font-weight:600}\
 .quiet{color:#5b636e}.wide{overflow-x:auto}table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}\
-th,td{padding:3px 10px;text-align:right;border-bottom:1px solid #dde1e6;white-space:nowrap}\
+th,td{padding:3px 7px;text-align:right;border-bottom:1px solid #dde1e6;white-space:nowrap}\
 th{border-bottom-color:#5b636e;vertical-align:bottom}td.name,th.name{text-align:left}tr.first td{background:#f3f5f8}\
-td.about{text-align:left;white-space:normal}figure{margin:18px 0 26px}figure svg{width:100%;height:auto;display:block}\
+td.about{text-align:left;white-space:normal}figure{margin:18px 0 26px}figure svg{width:100%;max-width:1080px;height:auto;display:block}\
 figcaption{font-size:13px;color:#5b636e;margin-top:4px}code{font-size:13px}li{margin:3px 0}";
 
 /// What the page tells.
@@ -72,6 +72,11 @@ fn list(lines: &[String]) -> String {
 fn names(of: impl Iterator<Item = String>) -> String {
     let quoted: Vec<String> = of.map(|name| format!("<b>{}</b>", escape(&name))).collect();
     quoted.join(", ")
+}
+
+/// A share of a specification in percent, as it was given: 0.025 is 2.5, and 0.55 no 55.00000000000001.
+pub(super) fn percent(share: f64) -> f64 {
+    (share * 1e6).round() / 1e4
 }
 
 /// In three lines.
@@ -212,7 +217,7 @@ fn workload(workload: &socrates_experiment::spec::Workload) -> String {
     format!(
         "<b>{}</b>: {about}The first answers are all right in {} % of scenarios; a first answer breaks a rule in: {}.",
         escape(&workload.name),
-        100.0 * workload.first_cut,
+        percent(workload.first_cut),
         asked.join(", ")
     )
 }
@@ -285,7 +290,7 @@ fn row(told: &Told<'_>, place: usize) -> Option<String> {
     let (result, figures) = (told.results.get(place)?, told.figures.get(place)?);
     let (cell, safety) = (&result.cell, &result.safety);
     let base = told.figures.get(cell.base)?;
-    let percent = |share: f64| format!("{:.1}", 100.0 * share);
+    let tenths = |share: f64| format!("{:.1}", 100.0 * share);
     let pairing = told.pairings.get(place)?.as_ref().filter(|_| cell.base != cell.number);
     let difference = pairing.map_or_else(String::new, |pair| {
         let of = pair.difference;
@@ -303,17 +308,16 @@ fn row(told: &Told<'_>, place: usize) -> Option<String> {
     Some(format!(
         "<tr{first}><td>{} %</td><td>{}</td><td class=\"name\">{}</td><td><b>{}</b> ({} to {})</td><td>{difference}</td><td>{p}</td>\
          <td>{}</td><td>{asks:.2}</td><td>{:.2}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.1}</td><td>{recovery}</td><td{class}>{}, {}</td></tr>",
-        // Rates are written as they are given: 2.5 % stays 2.5 %.
-        ((cell.rate * 1e6).round() / 1e4),
+        percent(cell.rate),
         cell.policy.tries(cell.tries),
         escape(&cell.policy.name),
-        percent(figures.success.estimate),
-        percent(figures.success.low),
-        percent(figures.success.high),
-        percent(figures.first_cut.estimate),
+        tenths(figures.success.estimate),
+        tenths(figures.success.low),
+        tenths(figures.success.high),
+        tenths(figures.first_cut.estimate),
         figures.amplification(),
         whole(figures.tokens_per_success()),
-        whole(pairing.and(figures.tokens_per_saved(base))),
+        whole(pairing.and_then(|_| figures.tokens_per_saved(base))),
         figures.time_s.map_or_else(String::new, |(p50, _)| format!("{p50:.1}")),
         told.means.get(place)?.time_s,
         safety.lost,
