@@ -47,8 +47,13 @@ pub struct Policy {
     pub reproposals: u32,
     /// Revisions that a person may ask for. Default 1 000.
     pub reviews: u32,
-    /// First back-off, ms; doubles with every failure. Default 500.
+    /// First back-off, ms. Default 500.
     pub backoff_ms: u64,
+    /// What a back-off is multiplied by with every further failure. Default 2; 1 keeps it as it is.
+    pub backoff_growth: u64,
+    /// Whether a back-off is drawn evenly from zero to its length, so that those who failed together do not come back
+    /// together. Default true.
+    pub backoff_jitter: bool,
     /// Longest back-off, ms. Default 60 000.
     pub backoff_cap_ms: u64,
     /// Started scenarios per live worker before new ones are begun. Default 4.
@@ -101,6 +106,8 @@ impl Default for Policy {
             reproposals: 1,
             reviews: 1_000,
             backoff_ms: 500,
+            backoff_growth: 2,
+            backoff_jitter: true,
             backoff_cap_ms: 60_000,
             open_per_worker: 4,
             max_open_jobs: 200_000,
@@ -145,13 +152,16 @@ impl Policy {
         }
     }
 
-    /// Pause before the next attempt after the `failures`-th failure, ms: full jitter, uniform in
-    /// 0 ..= min(cap, base · 2^(failures-1)). The draw is a hash of job and attempt, so that the
-    /// same history waits the same time.
+    /// Pause before the next attempt after the `failures`-th failure, ms: min(cap, base · growth^(failures-1)), with full jitter
+    /// uniform in 0 ..= that. The draw is a hash of job and attempt, so that the same history waits the same time.
     #[must_use]
     pub fn backoff(&self, key: &JobKey, attempt: u32, failures: u32) -> Millis {
-        let doubled = self.backoff_ms.saturating_mul(1_u64 << failures.saturating_sub(1).min(20));
-        let longest = doubled.min(self.backoff_cap_ms);
+        let grown =
+            self.backoff_ms.saturating_mul(self.backoff_growth.saturating_pow(failures.saturating_sub(1).min(20)));
+        let longest = grown.min(self.backoff_cap_ms);
+        if !self.backoff_jitter {
+            return longest;
+        }
         seeds::derive_seed(u64::from(attempt), &[&key.to_string(), "backoff"]) % longest.saturating_add(1)
     }
 
@@ -182,5 +192,9 @@ mod tests {
             assert_eq!(pause, policy.backoff(&key, failures, failures));
         }
         assert!((1..40).any(|n| policy.backoff(&key, n, n) > 5_000), "never waits long");
+        let plain = Policy { backoff_jitter: false, ..Policy::default() };
+        assert_eq!([1, 2, 3, 30].map(|n| plain.backoff(&key, n, n)), [500, 1_000, 2_000, 60_000]);
+        let fixed = Policy { backoff_growth: 1, ..plain };
+        assert_eq!([1, 2, 9].map(|n| fixed.backoff(&key, n, n)), [500; 3]);
     }
 }

@@ -17,6 +17,7 @@ const ROOMS: &[&str] = &[
     "workers/simulation/planners",
     "orchestrator/app",
     "orchestrator/cli",
+    "orchestrator/experiment",
     "orchestrator/export",
 ];
 

@@ -9,12 +9,13 @@ use crate::members;
 /// Libraries that a room which computes does not need, with all whose names begin so.
 const HEAVY: [&str; 5] = ["zenoh", "iceoryx2", "mcap", "rusqlite", "libsqlite3-sys"];
 /// Rooms in which somebody adds a metric, a node of a tree, a planner, a tool for maps, or a reader of requests.
-const ALONE: [&str; 15] = [
+const ALONE: [&str; 16] = [
     "socrates-bt",
     "socrates-checks",
     "socrates-crowd",
     "socrates-draw",
     "socrates-engine",
+    "socrates-experiment",
     "socrates-export",
     "socrates-hunav",
     "socrates-kit",

@@ -12,6 +12,7 @@ const PURE: &[&str] = &[
     "workers/simulation/planners",
     "workers/behavior_tree",
     "orchestrator",
+    "orchestrator/experiment",
 ];
 
 /// What they never name: parts of paths.

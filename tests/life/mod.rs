@@ -9,6 +9,7 @@ mod clusters;
 mod comparing;
 mod doors;
 mod evaluations;
+mod experiments;
 mod folders;
 mod judges;
 mod kept;

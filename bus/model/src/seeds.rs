@@ -16,6 +16,7 @@
 //! | a stream of the offline author | job seed and purpose ([`stream_seed`]) | cards, roles, durations of what is not said |
 //! | an injected fault | job seed, `fault`, stage, scenario or human, attempt, kind | whether and where an answer is damaged |
 //! | a case of `evaluate` | seed of the specification, `evaluate`, request, location, repeat | base seed of that scenario |
+//! | a draw of `experiment` | seed of the specification, `experiment`, what is drawn, scenario, stage, revision, attempt | faults, answers and durations of a simulated attempt |
 //! | a random location | its seed, `world`, kind | its floor plan |
 //! | speed of a person | simulation seed, `speed`, human | N(1.2, 0.2) m/s |
 //! | sway of a person | simulation seed, `sway`, human | where they stand beside their path |

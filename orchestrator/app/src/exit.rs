@@ -20,6 +20,8 @@ pub enum Code {
     Waits = 4,
     /// Author unreachable.
     Author = 5,
+    /// An experiment lost or doubled a result, or its checker complained.
+    Unsafe = 6,
     /// Between a supervisor and its children only: the child cannot go on, and would not after another start either.
     Stuck = 65,
 }

@@ -7,18 +7,19 @@ use serde::Deserialize;
 use socrates_model::AuthorSpec;
 
 use crate::exit::Complaint;
-use crate::files;
+use crate::protocol::Door;
 
-/// A specification larger than this is not read.
-const MAX_BYTES: u64 = 256 * 1024;
 /// Scenarios of one arm at most.
 const MOST: usize = 20_000;
-/// Specifications that come with the program.
-const SHIPPED: [(&str, &str); 3] = [
-    ("paper", include_str!("../../../../prompts/protocols/paper.toml")),
-    ("feedback", include_str!("../../../../prompts/protocols/feedback.toml")),
-    ("faults", include_str!("../../../../prompts/protocols/faults.toml")),
-];
+/// Where specifications come in.
+const DOOR: Door = Door {
+    what: "evaluation",
+    shipped: &[
+        ("paper", include_str!("../../../../prompts/protocols/paper.toml")),
+        ("feedback", include_str!("../../../../prompts/protocols/feedback.toml")),
+        ("faults", include_str!("../../../../prompts/protocols/faults.toml")),
+    ],
+};
 
 /// An evaluation.
 #[derive(Debug, Clone, Deserialize)]
@@ -131,35 +132,19 @@ pub(super) struct Case {
 impl Spec {
     /// The specification of this name, or of this file.
     pub(super) fn load(what: &Path) -> Result<Self, Complaint> {
-        let shown = what.display().to_string();
-        let shipped = SHIPPED.iter().find(|(name, _)| *name == shown);
-        let names: Vec<&str> = SHIPPED.iter().map(|(name, _)| *name).collect();
-        let hint = format!("name a file, or one that comes with the program: {}", names.join(", "));
-        let text = match shipped {
-            Some((_, text)) => (*text).to_owned(),
-            None => files::text(what, MAX_BYTES, &hint)?,
-        };
-        let mut spec: Self = toml::from_str(&text).map_err(|why| {
-            let mut complaint = Complaint::input(format!("the evaluation `{shown}` cannot be read"), hint);
-            complaint.causes = why.to_string().lines().map(str::to_owned).collect();
-            complaint
-        })?;
+        let mut spec: Self = DOOR.read(what)?;
         if let Some(name) = spec.like.take() {
-            if !names.contains(&name.as_str()) || name == shown {
+            let shown = what.display().to_string();
+            if !DOOR.ships(&name) || name == shown {
                 return Err(Complaint::input(
                     format!("the evaluation `{shown}` is to be like `{name}`, which does not come with the program"),
-                    format!("there is {}", names.join(", ")),
+                    format!("there is {}", DOOR.names()),
                 ));
             }
             spec.take(Self::load(Path::new(&name))?);
         }
         let problems = spec.problems();
-        if problems.is_empty() {
-            return Ok(spec);
-        }
-        let mut complaint = Complaint::input(format!("the evaluation `{shown}` cannot be done"), "correct these lines");
-        complaint.causes = problems;
-        Err(complaint)
+        if problems.is_empty() { Ok(spec) } else { Err(DOOR.refused(what, problems)) }
     }
 
     /// Takes over what it does not have itself.

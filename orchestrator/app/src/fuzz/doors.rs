@@ -15,7 +15,7 @@ use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::in_process::{self, Made};
 use crate::replay::tracks::{self, Known};
-use crate::{agents, bt, layout, map, prepare, prices};
+use crate::{agents, bt, experiment, layout, map, prepare, prices};
 
 /// An agents file of our own.
 const AGENTS: &str = include_str!("agents.yaml");
@@ -91,6 +91,7 @@ pub(super) const DOORS: &[Door] = &[
     Door { name: "bundles", names_file: true, samples: bundle_files, open: open_bundle },
     Door { name: "config", names_file: true, samples: configs, open: open_config },
     Door { name: "prices", names_file: true, samples: prices, open: open_prices },
+    Door { name: "experiments", names_file: true, samples: experiments, open: open_experiment },
     Door { name: "imports", names_file: true, samples: imports, open: open_import },
     Door { name: "cassettes", names_file: true, samples: cassettes, open: open_cassette },
     Door { name: "cards", names_file: false, samples: cards, open: open_card },
@@ -392,6 +393,21 @@ fn open_prices(
     _chance: &mut Chance,
 ) -> Result<(), Complaint> {
     prices::read_prices(&folder.join(&sample.file)).map(drop)
+}
+
+fn experiments(_kit: &Kit) -> Vec<Sample> {
+    let shipped = experiment::DOOR.shipped.iter();
+    shipped.map(|(name, text)| sample(format!("{name}.toml"), *text)).collect()
+}
+
+fn open_experiment(
+    _kit: &Kit,
+    folder: &Path,
+    sample: &Sample,
+    _bytes: &[u8],
+    _chance: &mut Chance,
+) -> Result<(), Complaint> {
+    experiment::load(&folder.join(&sample.file), None).map(drop)
 }
 
 fn imports(kit: &Kit) -> Vec<Sample> {

@@ -7,6 +7,7 @@ mod compare;
 mod dev;
 mod drive;
 mod evaluate;
+mod experiment;
 mod explain;
 mod keys;
 mod library;
@@ -130,6 +131,8 @@ pub(crate) enum Verb {
     Map(map::Map),
     /// Measure authors: how often scenarios are right at first, after asking again, and in the run.
     Evaluate(evaluate::Evaluate),
+    /// Try retry policies on injected faults in virtual time: what is lost, doubled, repeated, and what it costs.
+    Experiment(experiment::Experiment),
     /// Take out of a library what others can use.
     Library(library::Library),
     /// List, show and rate the canonical scenarios of the catalog.
@@ -182,6 +185,7 @@ impl Verb {
             Self::Bt(verb) => verb.act(talk),
             Self::Map(verb) => verb.act(talk),
             Self::Evaluate(verb) => verb.act(talk, config).await,
+            Self::Experiment(verb) => verb.act(talk),
             Self::Library(verb) => verb.act(talk),
             Self::Scenarios(verb) => verb.act(talk).await,
             Self::Cluster(verb) => verb.act(talk, config).await,

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! counts of runs ─► wilson          labels of two raters ─► cohen_kappa
-//! pairs of runs  ─► mcnemar
+//! pairs of runs  ─► mcnemar, paired_difference
+//! times of runs  ─► kaplan_meier ─► restricted_mean
 //! values of runs ─► quantile, median ─► bootstrap_median, bootstrap_mean (seeded)
 //! values by scenario and planner ─► Clusters ─► means, paired differences, orders of every resample
 //! scores of planners ─► kendall_tau
@@ -18,7 +19,9 @@ mod clusters;
 mod kappa;
 mod mcnemar;
 mod order;
+mod paired;
 mod rank;
+mod survival;
 mod wilson;
 
 pub use bootstrap::{Bootstrap, bootstrap_mean, bootstrap_median};
@@ -26,7 +29,9 @@ pub use clusters::Clusters;
 pub use kappa::{cohen_kappa, krippendorff_alpha};
 pub use mcnemar::mcnemar;
 pub use order::{mean, median, quantile, sample_sd};
+pub use paired::paired_difference;
 pub use rank::kendall_tau;
+pub use survival::{kaplan_meier, restricted_mean};
 pub use wilson::{Z_95, wilson};
 
 /// An estimate with its interval.

@@ -1,0 +1,58 @@
+//! The store of a simulated orchestrator: rows in memory, what a restart finds, and whether anything was written twice.
+
+use std::collections::BTreeMap;
+
+use socrates_model::ScenarioId;
+use socrates_model::job::JobKey;
+use socrates_orchestrator::{Attempt, Job, JobResult, Row, Scenario, Snapshot};
+
+/// The rows that were committed.
+#[derive(Debug, Default)]
+pub(crate) struct Rows {
+    scenarios: BTreeMap<ScenarioId, Scenario>,
+    jobs: BTreeMap<JobKey, Job>,
+    attempts: BTreeMap<(JobKey, u32), Attempt>,
+    results: BTreeMap<JobKey, JobResult>,
+    next_seq: u64,
+    paused: Vec<String>,
+    /// Results of jobs that were written more than once.
+    pub(crate) doubled: u64,
+}
+
+impl Rows {
+    /// Saves a row; it replaces what is under the same key.
+    pub(crate) fn save(&mut self, row: Row) {
+        match row {
+            Row::Scenario(scenario) => drop(self.scenarios.insert(scenario.spec.id.clone(), *scenario)),
+            Row::Job(job) => drop(self.jobs.insert(job.key.clone(), *job)),
+            Row::Attempt(key, attempt) => drop(self.attempts.insert((key, attempt.number), *attempt)),
+            Row::Result(key, result) => self.doubled += u64::from(self.results.insert(key, *result).is_some()),
+            Row::Event(_, notice) => self.next_seq = notice.seq.saturating_add(1),
+            Row::Paused(paused) => self.paused = paused,
+            Row::Text(..) | Row::Dead(..) | Row::Revived(_) => {}
+        }
+    }
+
+    /// What an orchestrator of this reign finds when it starts.
+    pub(crate) fn snapshot(&self, epoch: u64) -> Snapshot {
+        Snapshot {
+            epoch,
+            scenarios: self.scenarios.values().cloned().collect(),
+            jobs: self.jobs.values().cloned().collect(),
+            attempts: self.attempts.iter().map(|((key, _), attempt)| (key.clone(), attempt.clone())).collect(),
+            results: self.results.iter().map(|(key, result)| (key.clone(), result.clone())).collect(),
+            paused: self.paused.clone(),
+            next_seq: self.next_seq,
+        }
+    }
+
+    /// The scenario's row.
+    pub(crate) fn scenario(&self, id: &ScenarioId) -> Option<&Scenario> {
+        self.scenarios.get(id)
+    }
+
+    /// Whether the result of a job is the one that this attempt reported.
+    pub(crate) fn holds(&self, key: &JobKey, attempt: u32) -> bool {
+        self.results.get(key).is_some_and(|result| result.attempt == attempt)
+    }
+}
