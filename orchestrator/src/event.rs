@@ -1,5 +1,6 @@
 //! What goes into a step and what comes out of it.
 
+use serde::{Deserialize, Serialize};
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::{
     Acquire, Acquired, Beat, BeatReply, Control, Hello, Notice, Recorded, Release, Report, Submit, Submitted, Welcome,
@@ -92,8 +93,8 @@ pub enum Answer {
     Recorded(Recorded),
 }
 
-/// A row to be saved. Rows replace what is under the same key.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A row to be saved. Rows replace what is under the same key. Written down, it has what a store keeps of it and no time of this reign.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Row {
     /// A scenario, with its result once it has one.
     Scenario(Box<Scenario>),

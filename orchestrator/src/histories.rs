@@ -14,27 +14,31 @@ use crate::world::{World, fault, report, spec, success};
 use crate::{Attempt, Event, Job, JobResult, JobState, Policy, Row, Scenario, Snapshot, State};
 
 /// Draws by hashing a counter: the same seed is the same history.
-struct Dice {
+pub(crate) struct Dice {
     seed: u64,
     thrown: u64,
 }
 
 impl Dice {
-    fn below(&mut self, sides: u64) -> u64 {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self { seed, thrown: 0 }
+    }
+
+    pub(crate) fn below(&mut self, sides: u64) -> u64 {
         self.thrown += 1;
         derive_seed(self.seed, &[&self.thrown.to_string()]) % sides
     }
 
-    fn pick<T: Clone>(&mut self, of: &[T]) -> T {
+    pub(crate) fn pick<T: Clone>(&mut self, of: &[T]) -> T {
         let n = self.below(of.len() as u64);
         of[usize::try_from(n).unwrap()].clone()
     }
 }
 
-const ALL: [Stage; 6] =
+pub(crate) const ALL: [Stage; 6] =
     [Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors, Stage::Simulation, Stage::Scoring];
 
-fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
+pub(crate) fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
     let faults = |dice: &mut Dice| {
         let codes = [FaultCode::GDisc, FaultCode::BMatch, FaultCode::PPlace, FaultCode::EJson, FaultCode::DNoMeet];
         vec![fault(dice.pick(&codes), &dice.below(3).to_string())]
@@ -69,7 +73,7 @@ fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
     }
 }
 
-fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSpec> {
+pub(crate) fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSpec> {
     (0..1 + dice.below(3))
         .map(|n| {
             let mut spec = spec(&format!("s{n}"));
@@ -92,23 +96,44 @@ fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSpec> {
 
 /// What a store would hold after these rows.
 pub(crate) fn replay(rows: &[Row]) -> Snapshot {
+    let (snapshot, unfit) = kept(rows);
+    assert!(unfit.is_empty(), "{unfit:?}");
+    snapshot
+}
+
+/// What does not fit to the rows before it.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Unfit {
+    /// A second result of a job.
+    Second(JobKey),
+    /// An entry of the outbox that is not the next one.
+    Gap(u64),
+}
+
+/// The same of rows that need not be right.
+pub(crate) fn kept(rows: &[Row]) -> (Snapshot, Vec<Unfit>) {
     let mut scenarios: BTreeMap<ScenarioId, Scenario> = BTreeMap::new();
     let mut jobs: BTreeMap<JobKey, Job> = BTreeMap::new();
     let mut attempts: BTreeMap<(JobKey, u32), Attempt> = BTreeMap::new();
     let mut results: BTreeMap<JobKey, JobResult> = BTreeMap::new();
     let mut snapshot = Snapshot { epoch: 2, next_seq: 1, ..Snapshot::default() };
+    let mut unfit = Vec::new();
     for row in rows.iter().cloned() {
         match row {
             Row::Scenario(scenario) => drop(scenarios.insert(scenario.spec.id.clone(), *scenario)),
             Row::Job(job) => drop(jobs.insert(job.key.clone(), *job)),
             Row::Attempt(key, attempt) => drop(attempts.insert((key, attempt.number), *attempt)),
             Row::Result(key, result) => {
-                assert!(results.insert(key.clone(), *result).is_none(), "{key} has two results");
+                if results.insert(key.clone(), *result).is_some() {
+                    unfit.push(Unfit::Second(key));
+                }
             }
             Row::Paused(paused) => snapshot.paused = paused,
             Row::Event(_, notice) => {
-                assert_eq!(notice.seq, snapshot.next_seq, "the outbox has a gap");
-                snapshot.next_seq += 1;
+                if notice.seq != snapshot.next_seq {
+                    unfit.push(Unfit::Gap(notice.seq));
+                }
+                snapshot.next_seq = notice.seq + 1;
             }
             Row::Text(..) | Row::Dead(..) | Row::Revived(_) => {}
         }
@@ -117,7 +142,7 @@ pub(crate) fn replay(rows: &[Row]) -> Snapshot {
     snapshot.jobs = jobs.into_values().collect();
     snapshot.attempts = attempts.into_iter().map(|((key, _), attempt)| (key, attempt)).collect();
     snapshot.results = results.into_iter().collect();
-    snapshot
+    (snapshot, unfit)
 }
 
 /// What must survive a restart, in an order of its own.
@@ -142,7 +167,7 @@ fn restart(world: &mut World, alone: bool) {
 }
 
 fn history(seed: u64, length: u64) -> World {
-    let mut dice = Dice { seed, thrown: 0 };
+    let mut dice = Dice::new(seed);
     let mut world = World::with(Policy { open_per_worker: 1, ..Policy::default() });
     let specs = scenarios(&mut dice);
     world.submit(specs.clone());

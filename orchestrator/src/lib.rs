@@ -37,6 +37,8 @@ mod fsck;
 mod status;
 
 #[cfg(test)]
+mod broken;
+#[cfg(test)]
 mod histories;
 #[cfg(test)]
 mod lease_rules;

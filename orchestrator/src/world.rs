@@ -43,6 +43,27 @@ pub(crate) fn fault(code: FaultCode, text: &str) -> Fault {
     Fault::new(code, Where::key(text), text)
 }
 
+/// The rows that a step saves, in their order.
+pub(crate) fn saved(effects: &[Effect]) -> Vec<Row> {
+    let row = |effect: &Effect| match effect {
+        Effect::Save(row) => Some(row.clone()),
+        Effect::Reply { .. } | Effect::Notice { .. } | Effect::Hint(_) | Effect::ScenarioDone { .. } => None,
+    };
+    effects.iter().filter_map(row).collect()
+}
+
+/// What a step answers to this question.
+pub(crate) fn answer(effects: &[Effect], token: Token) -> Option<Answer> {
+    effects.iter().find_map(|effect| match effect {
+        Effect::Reply { to, answer } if *to == token => Some((**answer).clone()),
+        Effect::Reply { .. }
+        | Effect::Save(_)
+        | Effect::Notice { .. }
+        | Effect::Hint(_)
+        | Effect::ScenarioDone { .. } => None,
+    })
+}
+
 impl World {
     pub(crate) fn new() -> Self {
         Self::with(Policy::default())
@@ -58,19 +79,8 @@ impl World {
         self.effects = step(&mut self.state, event(token), self.now);
         let wrong = fsck(&self.state);
         assert!(wrong.is_empty(), "{wrong:#?}");
-        for effect in &self.effects {
-            if let Effect::Save(row) = effect {
-                self.rows.push(row.clone());
-            }
-        }
-        self.effects.iter().find_map(|effect| match effect {
-            Effect::Reply { to, answer } if *to == token => Some((**answer).clone()),
-            Effect::Reply { .. }
-            | Effect::Save(_)
-            | Effect::Notice { .. }
-            | Effect::Hint(_)
-            | Effect::ScenarioDone { .. } => None,
-        })
+        self.rows.extend(saved(&self.effects));
+        answer(&self.effects, token)
     }
 
     pub(crate) fn submit(&mut self, specs: Vec<ScenarioSpec>) -> Submitted {

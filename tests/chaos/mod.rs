@@ -1,10 +1,17 @@
-//! Kill -9 of any process during a batch: every scenario ends with one result, none twice, nothing left running.
+//! Faults during a batch, from kill -9 of any process to a full disk: every scenario ends with one result, none twice, nothing is left
+//! running, and `socrates fsck` finds nothing wrong.
+
+mod cluster;
+mod figures;
+mod nemesis;
+mod schedule;
+mod storm;
 
 use std::path::Path;
 
 use socrates_tests::program::{children, finish, naming, poll, signal, start};
 
-use crate::PROGRAM;
+use crate::{PROGRAM, socrates};
 
 /// Scenarios of the batch.
 const COUNT: usize = 200;
@@ -92,6 +99,10 @@ fn two_hundred_scenarios_survive_the_death_of_every_kind_of_process() {
     assert_eq!(first.code, -1, "the supervisor was not killed: {}", first.err);
     let gone = poll(|| naming(folder.path()).is_empty().then_some(()));
     assert!(gone.is_some(), "left running: {:#?}", naming(folder.path()));
+    // What it leaves is sound: the store, its artifacts, and the bundles that are written.
+    let left = socrates(folder.path(), "left", &["--format", "json", "fsck", &out]);
+    assert_eq!(left.code, 0, "{}{}", left.out, left.err);
+    assert_eq!(left.json()["stores"][0]["counts"]["scenarios"], COUNT, "{}", left.out);
     let done_before = results(&library);
     assert!(done_before < COUNT, "the batch was over before the supervisor died");
     let second = finish(start(PROGRAM, &args, folder.path(), "second").unwrap(), folder.path(), "second").unwrap();
@@ -103,5 +114,7 @@ fn two_hundred_scenarios_survive_the_death_of_every_kind_of_process() {
     assert_eq!(names.len(), COUNT, "a scenario came twice");
     assert!(scenarios.iter().all(|row| row["verdict"] != "failed"), "{json}");
     assert_eq!(results(&library), COUNT);
+    let made = socrates(folder.path(), "made", &["fsck", &out]);
+    assert_eq!(made.code, 0, "{}{}", made.out, made.err);
     assert!(poll(|| naming(folder.path()).is_empty().then_some(())).is_some());
 }

@@ -26,6 +26,7 @@ mod repairs;
 mod requests;
 mod restarts;
 mod slow_author;
+mod soundness;
 mod tables;
 mod training;
 

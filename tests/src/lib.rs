@@ -4,7 +4,7 @@
 //! house/    walls, homes of foreign libraries, file cap, fault pages, links in documents
 //! golden/   recording hashes of everything that is shipped
 //! life/     requests in, bundles out, with real processes
-//! chaos/    kill -9 of any process during a batch
+//! chaos/    faults during a batch: kill -9 of any process, freezes, a full disk, clocks that jump
 //! foreign/  with programs of others: browsers, servers of models, players, readers
 //! ```
 //!

@@ -47,6 +47,7 @@ pub mod export_chat;
 pub mod figure;
 mod files;
 mod folder;
+pub mod fsck;
 pub mod fuzz;
 pub mod golden;
 mod history;

@@ -2,14 +2,17 @@
 //!
 //! ```text
 //! rows of a step ─► save (one transaction) ─► disk      load ─► Snapshot ─► State
+//!                                              └─► audit ─► what is wrong with it
 //! ```
 //!
 //! [`Store`] is what the orchestrator's shell needs; [`SqliteStore`] keeps it in one file,
 //! [`MemoryStore`] in memory for tests. Artifacts live beside it, by content address; only small
 //! texts that came inside a report are kept here too, so that they are as durable as the report.
+//! [`audit()`] asks the file alone whether it is right, by rules that share nothing with the state machine.
 //!
 //! *Never here:* a decision about a job, the bus, a clock.
 
+mod audit;
 mod memory;
 mod reader;
 mod schema;
@@ -23,6 +26,7 @@ use std::path::PathBuf;
 use socrates_model::Digest;
 use socrates_orchestrator::{Row, Snapshot};
 
+pub use audit::{Audit, Checked, Counts, Named, Stands, audit};
 pub use memory::MemoryStore;
 pub use reader::{Reader, Standing};
 pub use sqlite::{Durability, SqliteStore};
@@ -68,6 +72,12 @@ pub enum StoreError {
         path: PathBuf,
         /// Layout found.
         found: u32,
+    },
+    /// It is a database of something else.
+    #[error("`{path}` is a database, and no job store: it lacks the table `meta`")]
+    Stranger {
+        /// Its file.
+        path: PathBuf,
     },
     /// A row cannot be read or written as what it should be.
     #[error("a row of table `{table}` in the job store is not what it should be")]

@@ -67,13 +67,13 @@ fn rows(effects: &[Effect]) -> Vec<Row> {
     effects.iter().filter_map(row).collect()
 }
 
-fn submit(state: &mut State, id: &str) -> Vec<Row> {
+pub(crate) fn submit(state: &mut State, id: &str) -> Vec<Row> {
     let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![scenario(id)] };
     rows(&step(state, Event::Submit { submit, to: 0 }, 0))
 }
 
 /// One acquire and one success; the rows of both.
-fn work(state: &mut State) -> Vec<Row> {
+pub(crate) fn work(state: &mut State) -> Vec<Row> {
     let ask = Acquire {
         req_id: state.next_fence.to_string(),
         instance: "w".to_owned(),

@@ -9,6 +9,7 @@ mod drive;
 mod evaluate;
 mod experiment;
 mod explain;
+mod fsck;
 mod keys;
 mod library;
 mod look;
@@ -119,6 +120,8 @@ pub(crate) enum Verb {
     View(view::View),
     /// Show how the scenarios of a folder stand, while they are made and afterwards.
     Status(look::Status),
+    /// Check that a job store, its artifacts and its bundles are whole and agree, also while they are worked on.
+    Fsck(fsck::Fsck),
     /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; without one, list the codes.
     Explain(explain::Explain),
     /// Check what this machine can do, and say what is missing.
@@ -179,6 +182,7 @@ impl Verb {
             Self::Drive(verb) => verb.act(talk, config).await,
             Self::Watch(verb) => verb.act(talk, config).await,
             Self::Status(verb) => verb.act(talk, config).await,
+            Self::Fsck(verb) => verb.act(talk),
             Self::Explain(verb) => verb.act(talk),
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),
