@@ -9,7 +9,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquired, BeatReply, BeatVerdict, Grant, NoWork, Recorded, ScenarioSpec, Submit};
+use socrates_model::wire::{Acquired, BeatReply, BeatVerdict, Grant, NoWork, Priority, Recorded, ScenarioSpec, Submit};
 use socrates_model::{Digest, PlannerName, Role, ScenarioId};
 use socrates_orchestrator::{Answer, Event};
 
@@ -107,7 +107,7 @@ impl Batch<'_> {
                 order: None,
             });
         }
-        let submit = Submit { batch: "experiment".to_owned(), scenarios };
+        let submit = Submit { batch: "experiment".to_owned(), priority: Priority::Normal, scenarios };
         let said = self.head.takes(|to| Event::Submit { submit, to }, self.now, None);
         self.tell(said, None, 0);
         for place in 0..self.workers.len() {

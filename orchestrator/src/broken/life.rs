@@ -6,8 +6,8 @@ use std::path::Path;
 use socrates_model::job::Stage;
 use socrates_model::report::Verdict;
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatVerdict, Control, Grant, Held, Recorded, Release, Report, ScenarioSpec, Submit,
-    Submitted,
+    Acquire, Acquired, Beat, BeatVerdict, Control, Grant, Held, Priority, Recorded, Release, Report, ScenarioSpec,
+    Submit, Submitted,
 };
 
 use super::flaw::Flaw;
@@ -111,7 +111,7 @@ impl Life {
     }
 
     fn submit(&mut self, death: Death) {
-        let submit = Submit { batch: "b".to_owned(), scenarios: self.specs.clone() };
+        let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: self.specs.clone() };
         if let Some(Answer::Submitted(Submitted::Accepted { .. })) =
             self.site.send(|to| Event::Submit { submit, to }, death)
         {
