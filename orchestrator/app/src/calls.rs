@@ -7,7 +7,7 @@ use socrates_model::wire::{PastAsk, PastEnd, PastPart, ScenarioSpec, StatusAsk, 
 use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
-use crate::exit::Complaint;
+use crate::exit::{Code, Complaint};
 
 /// Limit of one call.
 const CALL: Duration = Duration::from_secs(2);
@@ -52,9 +52,14 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
     Ok(fresh)
 }
 
-/// One page of statuses.
-pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
-    call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
+/// How things stand.
+pub(crate) async fn status(bus: &dyn Bus, ask: &StatusAsk) -> Result<StatusReply, LinkError> {
+    call(bus, keys::STATUS, "status", ask, CALL).await
+}
+
+/// What is said where the orchestrator does not answer.
+pub(crate) fn silent(why: LinkError) -> Complaint {
+    Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment").with_code(Code::Ours)
 }
 
 /// How every scenario stands, in order of submission.

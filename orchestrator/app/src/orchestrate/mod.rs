@@ -84,7 +84,7 @@ pub(crate) async fn serve(
     bus: Arc<dyn Bus>,
     mut shutdown: watch::Receiver<Stop>,
 ) -> anyhow::Result<()> {
-    let started = Instant::now();
+    let (started, began_ms) = (Instant::now(), socrates_link::wall_ms());
     let blobs = LocalBlobs::new(config.dir.join("blobs"), config.durability == Durability::Disk);
     let policy = Policy {
         lease_ms: config.lease_ms,
@@ -102,7 +102,7 @@ pub(crate) async fn serve(
         requests_per_minute: config.author_rates.1,
         ..Policy::default().asking_again(config.asks_again)
     };
-    let (store, state) = loop {
+    let (store, mut state) = loop {
         let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
         let (policy, alone) = (policy.clone(), config.alone);
         let opened = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept, alone)).await;
@@ -113,6 +113,7 @@ pub(crate) async fn serve(
             opened => break opened?,
         }
     };
+    state.clock_ms = began_ms;
     let epoch = state.epoch;
     tracing::info!(epoch, scenarios = state.counts().0, "the orchestrator begins");
 

@@ -43,7 +43,12 @@ fn pause_of_idle(effect: &mut Effect) -> Option<&mut Millis> {
     let Effect::Reply { answer, .. } = effect else { return None };
     match &mut **answer {
         Answer::Acquired(Acquired::None { retry_after_ms, reason: NoWork::Empty }) => Some(retry_after_ms),
-        Answer::Acquired(_) | Answer::Welcome(_) | Answer::Beat(_) | Answer::Recorded(_) | Answer::Submitted(_) => None,
+        Answer::Acquired(_)
+        | Answer::Welcome(_)
+        | Answer::Beat(_)
+        | Answer::Recorded(_)
+        | Answer::Submitted(_)
+        | Answer::Steered(_) => None,
     }
 }
 
@@ -121,7 +126,7 @@ impl Owner {
                 reply.serving_ms = self.now();
                 reply.done_before = u32::try_from(self.done_before).unwrap_or(u32::MAX);
                 // Behind the rows it speaks of, as every answer.
-                let said = Said { replies: vec![Reply { ask, say: Say::Status(reply) }], ..Said::default() };
+                let said = Said { replies: vec![Reply { ask, say: Say::Status(Box::new(reply)) }], ..Said::default() };
                 return self.send(Commit { rows: Vec::new(), said }).await;
             }
             Question::Acquire(acquire) => return self.acquire(acquire, ask, None).await,

@@ -33,7 +33,7 @@ pub(super) enum Say {
     /// The state machine's word.
     Answer(Box<Answer>),
     /// How things stand.
-    Status(StatusReply),
+    Status(Box<StatusReply>),
 }
 
 /// What is said once the rows are durable.
@@ -182,6 +182,7 @@ async fn answer(bus: &dyn Bus, epoch: u64, reply: Reply) -> Result<(), LinkError
             Answer::Acquired(acquired) => grant(ask, Envelope::fresh(&kind, bus.name(), epoch, acquired)).await,
             Answer::Beat(beat) => grant(ask, Envelope::fresh(&kind, bus.name(), epoch, beat)).await,
             Answer::Recorded(recorded) => ask.answer(&kind, bus.name(), epoch, &recorded).await,
+            Answer::Steered(steered) => ask.answer(&kind, bus.name(), epoch, &steered).await,
             // A control is answered with how many scenarios it touched.
             Answer::Submitted(Submitted::Accepted { new }) if control => {
                 ask.answer(&kind, bus.name(), epoch, &new).await
