@@ -42,6 +42,7 @@ mod driver_process;
 pub mod evaluate;
 pub mod exit;
 pub mod explain;
+pub mod explain_job;
 pub mod export_chat;
 pub mod figure;
 mod files;

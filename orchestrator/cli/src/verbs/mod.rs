@@ -118,7 +118,8 @@ pub(crate) enum Verb {
     View(view::View),
     /// Show how the scenarios of a folder stand, while they are made and afterwards.
     Status(look::Status),
-    /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; without one, list the codes.
+    /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; or why a job waits. Without a word, list the
+    /// codes.
     Explain(explain::Explain),
     /// Check what this machine can do, and say what is missing.
     Doctor,
@@ -176,7 +177,7 @@ impl Verb {
             Self::Drive(verb) => verb.act(talk, config).await,
             Self::Watch(verb) => verb.act(talk, config).await,
             Self::Status(verb) => verb.act(talk, config).await,
-            Self::Explain(verb) => verb.act(talk),
+            Self::Explain(verb) => verb.act(talk, config).await,
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),
             Self::Bt(verb) => verb.act(talk),
