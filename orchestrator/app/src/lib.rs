@@ -91,6 +91,7 @@ pub mod shard;
 mod signals;
 mod stages;
 pub mod standing;
+pub mod steer;
 mod supervise;
 pub mod tokens;
 pub mod traces;
