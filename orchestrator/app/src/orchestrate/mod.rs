@@ -9,6 +9,7 @@
 //! Events stand in one line before the owner; nothing of a step is seen before its rows are durable.
 
 mod artifacts;
+mod metrics;
 mod owner;
 mod past;
 mod reader;
@@ -68,6 +69,8 @@ pub(crate) struct OrchestratorConfig {
     /// Whether a disk that takes nothing more is waited for, while workers keep their reports; otherwise serving ends with
     /// the reason, for whoever supervises it.
     pub(crate) waits: bool,
+    /// Where figures are served; none for nowhere.
+    pub(crate) metrics: Option<tokio::net::TcpListener>,
 }
 
 /// How long the orchestrator of a supervisor waits for the one of an earlier supervisor, which is leaving, to give up the store.
@@ -119,7 +122,8 @@ pub(crate) async fn serve(
 
     let (line, inbound) = mpsc::channel::<Inbound>(LINE);
     let (committed, telling) = mpsc::channel(TELLING);
-    let (writer, mut broken) = writer::start(store, committed).context("starting the writer")?;
+    let commits = metrics::Commits::new();
+    let (writer, mut broken) = writer::start(store, committed, commits.clone()).context("starting the writer")?;
     let mut tasks = JoinSet::new();
     tasks.spawn(writer::tell(Arc::clone(&bus), epoch, telling));
     // Everything is declared before the token that says so.
@@ -139,10 +143,13 @@ pub(crate) async fn serve(
     let store_file = config.dir.join("jobs.sqlite");
     tasks.spawn(past::serve(Arc::clone(&bus), bus.serve(keys::PAST).await.context("serving the past")?, store_file));
     let presence = bus.watch_alive(keys::WORKERS_ALIVE).await.context("watching the workers")?;
+    if let Some(listener) = config.metrics {
+        tasks.spawn(metrics::serve(listener, line.clone()));
+    }
     tasks.spawn(reader::watch(presence, line));
     let token = bus.declare_alive(&keys::orchestrator_alive(bus.name())).await.context("showing the token")?;
 
-    let mut owner = Owner::new(state, started, writer);
+    let mut owner = Owner::new(state, started, writer, commits);
     let result = tokio::select! {
         biased;
         why = &mut broken => Err(why.map_or_else(|_gone| anyhow::anyhow!("the writer of the job store has ended"), anyhow::Error::from)),

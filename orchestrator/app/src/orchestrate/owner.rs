@@ -10,6 +10,7 @@ use socrates_model::wire::{Acquire, Acquired, NoWork};
 use socrates_orchestrator::{Answer, Effect, Event, Millis, Row, State, Token, status, step};
 use tokio::sync::mpsc;
 
+use super::metrics::{self, Commits};
 use super::reader::{Inbound, Question};
 use super::writer::{Commit, Reply, Said, Say};
 
@@ -69,12 +70,14 @@ pub(super) struct Owner {
     asks: BTreeMap<Token, Ask>,
     next: Token,
     waiting: VecDeque<Waiting>,
+    commits: Commits,
 }
 
 impl Owner {
-    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>) -> Self {
+    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>, commits: Commits) -> Self {
         let done_before = state.counts().1;
-        Self { state, started, done_before, writer, asks: BTreeMap::new(), next: 0, waiting: VecDeque::new() }
+        let (asks, waiting) = (BTreeMap::new(), VecDeque::new());
+        Self { state, started, done_before, writer, asks, next: 0, waiting, commits }
     }
 
     fn now(&self) -> Millis {
@@ -95,6 +98,10 @@ impl Owner {
                         // Nobody is left to hear the answer; a grant to it would only wait for its lease to end.
                         self.waiting.retain(|waiting| waiting.acquire.instance != instance);
                         self.event(Event::Gone { instance }).await;
+                    }
+                    // A collector that went away needs no answer.
+                    Some(Inbound::Counted(answer)) => {
+                        drop(answer.send(metrics::text(&self.state, self.now(), &self.commits)));
                     }
                     Some(Inbound::Full(why)) => return Some(why),
                     None => return None,

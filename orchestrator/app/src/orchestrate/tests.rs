@@ -46,6 +46,7 @@ async fn open(dir: &Path) -> Site {
         code_version: "1".to_owned(),
         alone: false,
         waits: true,
+        metrics: None,
     };
     let mut alive = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.unwrap();
     let running = tokio::spawn(serve(config, Arc::clone(&bus), shutdown));
@@ -278,6 +279,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         code_version: String::new(),
         alone: false,
         waits: true,
+        metrics: None,
     };
     let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
     let refused = tokio::time::timeout(LIMIT, serve(config, bus, shutdown)).await.expect("hangs");

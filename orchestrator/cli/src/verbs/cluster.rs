@@ -257,7 +257,7 @@ pub(crate) struct Up {
     #[arg(long)]
     listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
-    /// returns any result. There is no password and no encryption.
+    /// returns any result. There is no password and no encryption. It also lets `--metrics` be read from other machines.
     #[arg(long)]
     insecure: bool,
     /// Endpoint of a router to use instead of listening.
@@ -269,6 +269,10 @@ pub(crate) struct Up {
     /// What a commit outlives: `disk` (a power cut) or `process` (any signal; for workers on this machine alone).
     #[arg(long, value_enum, default_value_t = Durable::Disk)]
     durable: Durable,
+    /// Serve figures for Prometheus on this address, such as 127.0.0.1:9464, at /metrics; one that other machines can reach needs
+    /// `--insecure`.
+    #[arg(long, value_name = "ADDR")]
+    metrics: Option<String>,
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(super) tied: bool,
@@ -281,13 +285,13 @@ pub(crate) struct Up {
 
 impl Up {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let Self { dir, listen, insecure, connect, namespace, durable, tied, alone, keys } = self.clone();
+        let Self { dir, listen, insecure, connect, namespace, durable, metrics, tied, alone, keys } = self.clone();
         let config = &keys.over(config)?;
         let durable = match durable {
             Durable::Disk => Durability::Disk,
             Durable::Process => Durability::Process,
         };
-        let options = OrchestratorOptions { dir, listen, insecure, connect, namespace, durable, tied, alone };
+        let options = OrchestratorOptions { dir, listen, insecure, connect, namespace, durable, metrics, tied, alone };
         done(process::orchestrator(talk, config, &options).await)
     }
 }
