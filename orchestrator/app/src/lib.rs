@@ -94,6 +94,7 @@ pub mod standing;
 pub mod steer;
 mod supervise;
 pub mod tokens;
+pub mod top;
 pub mod traces;
 mod variants;
 pub mod verify;

@@ -18,6 +18,7 @@ mod scenarios;
 mod score;
 mod serve;
 mod simulate;
+mod top;
 mod video;
 mod view;
 
@@ -118,6 +119,8 @@ pub(crate) enum Verb {
     View(view::View),
     /// Show how the scenarios of a folder stand, while they are made and afterwards.
     Status(look::Status),
+    /// Show stages, workers and the newest failures of an orchestrator, drawn anew every second.
+    Top(top::Top),
     /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; or why a job waits. Without a word, list the
     /// codes.
     Explain(explain::Explain),
@@ -177,6 +180,7 @@ impl Verb {
             Self::Drive(verb) => verb.act(talk, config).await,
             Self::Watch(verb) => verb.act(talk, config).await,
             Self::Status(verb) => verb.act(talk, config).await,
+            Self::Top(verb) => verb.act(talk, config).await,
             Self::Explain(verb) => verb.act(talk, config).await,
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),
