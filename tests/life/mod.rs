@@ -24,6 +24,7 @@ mod repairs;
 mod requests;
 mod restarts;
 mod slow_author;
+mod steering;
 mod tables;
 mod training;
 
