@@ -55,6 +55,7 @@ impl Turn<'_> {
             return self.none(to, NoWork::Drained);
         }
         if !wanted.is_empty() && *wanted != ask.code_version {
+            self.turned_away(&ask.stages, &ask.code_version);
             return self.none(to, NoWork::Version);
         }
         match self.choose(ask) {
@@ -94,8 +95,7 @@ impl Turn<'_> {
         // Questions and their tokens that this reply already puts to each server.
         let mut questions: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
         let mut authoring = state.authoring;
-        let workers = u32::try_from(state.workers.len()).unwrap_or(u32::MAX);
-        let wip = usize::try_from(workers.saturating_mul(state.policy.open_per_worker)).unwrap_or(usize::MAX).max(8);
+        let wip = state.most_begun();
         if state.paused.contains("") {
             return Err((NoWork::Paused, None));
         }
@@ -110,6 +110,12 @@ impl Turn<'_> {
                     continue;
                 }
             };
+            if state.paused_stages.contains(&stage) {
+                if state.has_ready(stage) {
+                    why = NoWork::Paused;
+                }
+                continue;
+            }
             let mut held: BTreeSet<&str> = BTreeSet::new();
             for (_, _, _, key) in state.ready.get(&stage).into_iter().flatten() {
                 if chosen.len() >= most {
@@ -196,14 +202,17 @@ impl Turn<'_> {
         let fence = self.state.next_fence;
         let lease_until = now.saturating_add(self.state.policy.lease_ms);
         let deadline_at = now.saturating_add(self.state.policy.deadline_ms(key.stage));
+        let at_ms = self.state.wall_ms(now);
         self.state.next_fence += 1;
         let job = self.job_mut(key)?;
         let number = job.attempts.last().map_or(0, |attempt| attempt.number) + 1;
-        let attempt = Attempt { ready: job.ready, ..Attempt::new(number, instance, fence, job.trial, now) };
+        let ready = job.ready;
+        let attempt = Attempt { ready, at_ms, ..Attempt::new(number, instance, fence, job.trial, now) };
         job.attempts.push(attempt);
         job.lease_until = lease_until;
         job.deadline_at = deadline_at;
         self.attempt_mut(key, number);
+        self.state.tally.waited(key.stage, now.saturating_sub(ready));
         self.move_to(key, JobState::Leased, "");
         self.with_bucket(key, |bucket, _policy| bucket.take(now, key.stage));
         self.with_circuit(key, |circuit, policy| circuit.granted(policy, now));
@@ -265,8 +274,10 @@ impl Attempt {
             tokens: (0, 0),
             remark: String::new(),
             artifacts: Vec::new(),
+            at_ms: 0,
             granted,
             ready: granted,
+            counted: false,
         }
     }
 }

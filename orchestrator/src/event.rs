@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatReply, Control, Hello, Notice, Recorded, Release, Report, Submit, Submitted, Welcome,
+    Acquire, Acquired, Beat, BeatReply, Control, Hello, Notice, Recorded, Release, Report, Steered, Submit, Submitted,
+    Welcome,
 };
 use socrates_model::{Digest, ScenarioId};
 
@@ -85,6 +86,8 @@ pub enum Answer {
     Welcome(Welcome),
     /// To a submission, and to a control: `new` is then the number of scenarios it touched.
     Submitted(Submitted),
+    /// To a control that asks what came of it.
+    Steered(Steered),
     /// To an acquire.
     Acquired(Acquired),
     /// To a beat.
@@ -114,6 +117,8 @@ pub enum Row {
     Revived(JobKey),
     /// The paused batches.
     Paused(Vec<String>),
+    /// The paused stages.
+    PausedStages(Vec<Stage>),
 }
 
 /// What a step wants done, in this order: all rows in one transaction, then the rest.

@@ -117,6 +117,21 @@ fn check_indices(state: &State, wrong: &mut Vec<String>) {
             wrong.push(format!("I4 {what}: counter `{counter}`, rows `{rows}`"));
         }
     }
+    for ((stage, of), counter) in &state.tally.jobs {
+        let rows = state.jobs.values().filter(|job| (job.key.stage, job.state) == (*stage, *of)).count();
+        if usize::try_from(*counter).unwrap_or(usize::MAX) != rows {
+            wrong.push(format!("I4 {stage} {}: counter `{counter}`, rows `{rows}`", of.name()));
+        }
+    }
+    let all: u64 = state.tally.jobs.values().sum();
+    let held = count(|job| {
+        matches!(job.state, JobState::Leased | JobState::Canceling)
+            && job.key.stage != socrates_model::job::Stage::Review
+    });
+    if usize::try_from(all).ok() != Some(state.jobs.len()) || usize::try_from(state.pace.held).ok() != Some(held) {
+        let (jobs, paced) = (state.jobs.len(), state.pace.held);
+        wrong.push(format!("I4 jobs: `{all}` counted of `{jobs}`, `{paced}` held of `{held}`"));
+    }
     for worker in state.workers.values() {
         for key in &worker.held {
             let holds = state.jobs.get(key).and_then(Job::current).is_some_and(|a| a.instance == worker.hello.instance);

@@ -7,7 +7,7 @@ use socrates_model::fault::{FailureClass, FaultCode};
 use socrates_model::job::{JobKey, Look, Stage};
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::seeds::derive_seed;
-use socrates_model::wire::{Control, Grant, Outcome, Report};
+use socrates_model::wire::{Control, Grant, Outcome, Part, Report, Steer};
 use socrates_model::{Role, ScenarioId};
 
 use crate::world::{World, fault, report, spec, success};
@@ -129,6 +129,7 @@ pub(crate) fn kept(rows: &[Row]) -> (Snapshot, Vec<Unfit>) {
                 }
             }
             Row::Paused(paused) => snapshot.paused = paused,
+            Row::PausedStages(stages) => snapshot.paused_stages = stages,
             Row::Event(_, notice) => {
                 if notice.seq != snapshot.next_seq {
                     unfit.push(Unfit::Gap(notice.seq));
@@ -209,7 +210,11 @@ fn history(seed: u64, length: u64) -> World {
             16 => drop(world.submit(specs.clone())),
             17 => match dice.below(12) {
                 0 => drop(world.control(Control::Cancel("b".to_owned()))),
-                1 => drop(world.control(Control::Pause("b".to_owned()))),
+                1 if dice.below(2) == 0 => drop(world.control(Control::Pause("b".to_owned()))),
+                1 => {
+                    let control = Control::Steer(Steer::Pause(Part::Stage(dice.pick(&ALL))));
+                    world.send(|to| Event::Control { control, to });
+                }
                 2 | 3 => drop(world.control(Control::Resume("b".to_owned()))),
                 4..8 => drop(world.control(Control::Requeue(dice.pick(&specs).id))),
                 _ => {

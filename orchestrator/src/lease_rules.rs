@@ -87,7 +87,7 @@ fn a_worker_that_only_beats_after_a_restart_is_counted_again() {
     world = restarted(world, false);
     world.beat("w", &[]);
     world.grants("w", Stage::Scoring);
-    let about = StatusAsk { batch: String::new(), from: 0 };
+    let about = StatusAsk::default();
     let reply = status(&world.state, &about, world.now);
     assert_eq!(reply.workers.get("scoring"), Some(&1), "{:?}", reply.workers);
 }

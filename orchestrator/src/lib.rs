@@ -15,9 +15,11 @@
 pub mod bucket;
 pub mod circuit;
 pub mod event;
+pub mod pace;
 pub mod pipeline;
 pub mod policy;
 pub mod state;
+pub mod tally;
 
 mod turn;
 
@@ -34,7 +36,9 @@ mod submit;
 mod timer;
 
 mod fsck;
+pub mod overview;
 mod status;
+mod why;
 
 #[cfg(test)]
 mod broken;
@@ -49,6 +53,8 @@ mod rates;
 #[cfg(test)]
 mod rules;
 #[cfg(test)]
+mod steer_rules;
+#[cfg(test)]
 mod world;
 
 pub use budget::price_of;
@@ -58,6 +64,8 @@ pub use policy::Policy;
 pub use recover::Snapshot;
 pub use state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, ScenarioEnd, State, Worker};
 pub use status::{standing, status};
+pub use tally::Tally;
+pub use why::whys_of_rows;
 
 /// One step: takes an event at time `now` and says what is to be saved and sent.
 ///

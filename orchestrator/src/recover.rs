@@ -4,9 +4,10 @@
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
-use socrates_model::job::JobKey;
+use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::Hello;
 
+use crate::pace::Pacer;
 use crate::policy::Policy;
 use crate::state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, State, Worker};
 use crate::turn::Turn;
@@ -26,6 +27,9 @@ pub struct Snapshot {
     pub results: Vec<(JobKey, JobResult)>,
     /// Paused batches.
     pub paused: Vec<String>,
+    /// Paused stages.
+    #[serde(default)]
+    pub paused_stages: Vec<Stage>,
     /// Number after the last of the outbox.
     pub next_seq: u64,
 }
@@ -38,6 +42,8 @@ impl State {
         state.epoch = snapshot.epoch;
         state.next_seq = snapshot.next_seq.max(1);
         state.paused = snapshot.paused.into_iter().collect::<BTreeSet<String>>();
+        state.paused_stages = snapshot.paused_stages.into_iter().collect();
+        state.pace = Pacer::new(now);
         for mut scenario in snapshot.scenarios {
             scenario.jobs.clear();
             scenario.open = 0;
@@ -56,6 +62,7 @@ impl State {
             state.next_fence = state.next_fence.max(attempt.fence + 1);
             attempt.granted = now;
             attempt.ready = now;
+            attempt.counted = attempt.end.is_some();
             if let Some(job) = state.jobs.get_mut(&key) {
                 job.attempts.push(attempt);
             }

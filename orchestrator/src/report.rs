@@ -5,6 +5,7 @@ use socrates_model::fault::{FailureClass, Fault, FaultCode};
 use socrates_model::job::{Artifact, JobKey, Stage};
 use socrates_model::wire::{Outcome, Recorded, Release, Report};
 
+use crate::bucket::server_of;
 use crate::event::{Answer, Row, Token};
 use crate::failure::Failure;
 use crate::pipeline;
@@ -19,6 +20,11 @@ const ARTIFACTS: usize = 12;
 impl Turn<'_> {
     pub(crate) fn report(&mut self, report: Report, to: Token) {
         let recorded = self.record(report);
+        match recorded {
+            Recorded::Duplicate => self.state.tally.duplicates += 1,
+            Recorded::Late => self.state.tally.late += 1,
+            Recorded::Accepted | Recorded::Busy => {}
+        }
         self.reply(to, Answer::Recorded(recorded));
     }
 
@@ -92,6 +98,9 @@ impl Turn<'_> {
             attempt.class = Some(*class);
             attempt.faults.clone_from(faults);
             attempt.artifacts.clone_from(&report.artifacts);
+        }
+        if let Some(server) = self.job(&report.key).and_then(|job| server_of(&job.spec)).map(str::to_owned) {
+            self.state.tally.asked(&server, report.tokens);
         }
         let (stage, rates) = (report.key.stage, report.rates);
         self.with_bucket(&report.key, |bucket, policy| bucket.answered(policy, now, stage, tokens, rates));

@@ -486,7 +486,7 @@ fn status_pages_fit_a_message_and_cover_everything() {
     let mut from = 0;
     let mut seen = 0;
     while from < 500 {
-        let reply = status(&world.state, &StatusAsk { batch: String::new(), from }, world.now);
+        let reply = status(&world.state, &StatusAsk { from, ..StatusAsk::default() }, world.now);
         assert!(serde_json::to_vec(&reply).unwrap().len() < 64 * 1024);
         assert_eq!((reply.total, reply.done), (500, 0));
         assert!(!reply.scenarios.is_empty());
@@ -500,7 +500,7 @@ fn status_pages_fit_a_message_and_cover_everything() {
 fn status_counts_what_runs_and_how_the_others_ended() {
     let mut world = World::new();
     world.submit(vec![spec("a"), spec("b"), spec("c")]);
-    let ask = StatusAsk { batch: String::new(), from: 0 };
+    let ask = StatusAsk::default();
     let reply = status(&world.state, &ask, world.now);
     assert_eq!((reply.total, reply.done, reply.running, reply.results.len()), (3, 0, 0, 0));
     let lead = world.reach_scoring();
@@ -523,7 +523,7 @@ fn a_scenario_with_many_runs_takes_several_lines() {
     let mut jobs = Vec::new();
     let mut from = 0;
     loop {
-        let reply = status(&world.state, &StatusAsk { batch: "b".to_owned(), from }, world.now);
+        let reply = status(&world.state, &StatusAsk { batch: "b".to_owned(), from, ..StatusAsk::default() }, world.now);
         if reply.scenarios.is_empty() {
             break;
         }

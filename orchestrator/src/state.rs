@@ -12,13 +12,15 @@ use socrates_model::{Digest, Fault, Role, ScenarioId};
 
 use crate::bucket::Bucket;
 use crate::circuit::Circuit;
+use crate::pace::Pacer;
 use crate::policy::Policy;
+use crate::tally::Tally;
 
 /// Time on the shell's monotonic clock, ms. Its zero has no meaning.
 pub type Millis = u64;
 
 /// How an attempt ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AttemptEnd {
     /// Its result is the job's.
@@ -35,6 +37,22 @@ pub enum AttemptEnd {
     Canceled,
     /// Stopped because another attempt or revision made it needless.
     Superseded,
+}
+
+impl AttemptEnd {
+    /// Name in tables and metrics.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Succeeded => "succeeded",
+            Self::Failed => "failed",
+            Self::TimedOut => "timed_out",
+            Self::Lapsed => "lapsed",
+            Self::Released => "released",
+            Self::Canceled => "canceled",
+            Self::Superseded => "superseded",
+        }
+    }
 }
 
 /// One try at a job. Append-only; only its end is written later.
@@ -68,12 +86,18 @@ pub struct Attempt {
     pub remark: String,
     /// What a failed attempt left: the refused answer, the exchange.
     pub artifacts: Vec<Artifact>,
+    /// Wall time at which it was granted, ms since 1970, for people; 0 where it is not known.
+    #[serde(default)]
+    pub at_ms: u64,
     /// When it was granted, on this reign's clock.
     #[serde(skip)]
     pub granted: Millis,
     /// When its job became ready, on this reign's clock.
     #[serde(skip)]
     pub ready: Millis,
+    /// Whether its end was counted.
+    #[serde(skip)]
+    pub(crate) counted: bool,
 }
 
 /// The one result of a job.
@@ -140,6 +164,9 @@ pub struct Job {
     pub delay_ms: u64,
     /// Why it is where it is, in a few words.
     pub reason: String,
+    /// Wall time since which it is in its state, ms since 1970, for people; 0 where it is not known.
+    #[serde(default)]
+    pub since_ms: u64,
     /// Attempts in order.
     #[serde(skip)]
     pub attempts: Vec<Attempt>,
@@ -225,6 +252,9 @@ pub struct Scenario {
     pub end: Option<ScenarioEnd>,
     /// Whether any job was granted.
     pub started: bool,
+    /// Wall time at which it was submitted, ms since 1970, for people; 0 where it is not known.
+    #[serde(default)]
+    pub since_ms: u64,
     /// Jobs in order of their making.
     #[serde(skip)]
     pub jobs: Vec<JobKey>,
@@ -261,8 +291,20 @@ pub struct State {
     pub jobs: BTreeMap<JobKey, Job>,
     /// Workers by instance.
     pub workers: BTreeMap<String, Worker>,
+    /// Wall time at the zero of the shell's clock, ms since 1970; 0 where the shell does not say. It is shown and decides nothing.
+    pub clock_ms: u64,
     /// Paused batches; the empty name pauses all.
     pub paused: BTreeSet<String>,
+    /// Paused stages.
+    pub paused_stages: BTreeSet<Stage>,
+    /// Versions of the last workers that were turned away, by stage.
+    pub strangers: BTreeMap<Stage, String>,
+    /// What is counted.
+    pub tally: Tally,
+    /// How fast everything goes.
+    pub pace: Pacer,
+    /// How fast each batch goes.
+    pub paces: BTreeMap<String, Pacer>,
     /// Next fence.
     pub next_fence: u64,
     /// Next place in the order of submission.
@@ -314,7 +356,13 @@ impl State {
             scenarios: BTreeMap::new(),
             jobs: BTreeMap::new(),
             workers: BTreeMap::new(),
+            clock_ms: 0,
             paused: BTreeSet::new(),
+            paused_stages: BTreeSet::new(),
+            strangers: BTreeMap::new(),
+            tally: Tally::default(),
+            pace: Pacer::default(),
+            paces: BTreeMap::new(),
             next_fence: 1,
             next_order: 0,
             next_seq: 1,
@@ -352,6 +400,17 @@ impl State {
     #[must_use]
     pub fn is_done(&self) -> bool {
         !self.scenarios.is_empty() && self.done == self.scenarios.len()
+    }
+
+    /// Wall time of a time on the shell's clock, ms since 1970; 0 where it is not known.
+    pub(crate) const fn wall_ms(&self, now: Millis) -> u64 {
+        if self.clock_ms == 0 { 0 } else { self.clock_ms.saturating_add(now) }
+    }
+
+    /// Started scenarios at which no new one is begun.
+    pub(crate) fn most_begun(&self) -> usize {
+        let workers = u32::try_from(self.workers.len()).unwrap_or(u32::MAX);
+        usize::try_from(workers.saturating_mul(self.policy.open_per_worker)).unwrap_or(usize::MAX).max(8)
     }
 
     /// Whether a job of this stage waits for a worker.

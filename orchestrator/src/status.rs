@@ -1,14 +1,17 @@
 //! Status: how things stand, for clients, in pages that fit a message.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use socrates_model::ScenarioId;
 use socrates_model::job::JobKey;
 use socrates_model::wire::{JobStatus, ScenarioStatus, StatusAsk, StatusReply};
 
+use crate::overview;
+use crate::pace::Pacer;
 use crate::policy::Policy;
 use crate::recover::Snapshot;
 use crate::state::{Job, Millis, Scenario, ScenarioEnd, State};
+use crate::why;
 
 /// Scenario lines in one reply at most.
 const LINES: usize = 200;
@@ -20,10 +23,11 @@ const BYTES: usize = 40 * 1024;
 const FAULTS: usize = 6;
 const FAULT_CHARS: usize = 300;
 
-/// Answers a status question at time `now`, ms. The running scenarios are those of every batch. Lines come in order of submission; ask again from
-/// `from` plus the number of lines until there are none.
+/// Answers a status question at time `now`, ms. Lines come in order of submission; ask again from `from` plus the number of lines
+/// until there are none. The first lines come with the list of batches.
 ///
-/// A scenario with many runs takes several lines under the same id, each with a part of its jobs.
+/// A scenario with many runs takes several lines under the same id, each with a part of its jobs. Where jobs or the table were asked for,
+/// they come instead of lines.
 #[must_use]
 pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
     let chosen = || {
@@ -39,19 +43,23 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
     for end in chosen().filter_map(|scenario| scenario.end) {
         *results.entry(end).or_default() += 1;
     }
-    let held = state.workers.values().flat_map(|worker| &worker.held).map(|key| &key.scenario);
-    let running: BTreeSet<&ScenarioId> = held.collect();
+    let is_of = |id: &&ScenarioId| {
+        ask.batch.is_empty() || state.scenarios.get(*id).is_some_and(|scenario| scenario.batch == ask.batch)
+    };
+    let running = overview::running(state).into_iter().filter(is_of).count();
     let mut workers: BTreeMap<String, u32> = BTreeMap::new();
-    let alive = |seen: Millis| now.saturating_sub(seen) < state.policy.lease_ms;
-    for worker in state.workers.values().filter(|worker| alive(worker.seen)) {
+    for worker in state.workers.values().filter(|worker| overview::is_alive(state, worker, now)) {
         for stage in &worker.hello.stages {
             *workers.entry(stage.name().to_owned()).or_default() += 1;
         }
     }
+    let with_lines = ask.job.is_none() && !ask.table;
+    let (batches, batches_left) =
+        if ask.from == 0 && with_lines { overview::batches(state, now) } else { (Vec::new(), 0) };
     let mut scenarios: Vec<ScenarioStatus> = Vec::new();
-    let mut room = BYTES;
+    let mut room = if batches.is_empty() { BYTES } else { BYTES - overview::BATCH_BYTES };
     let mut skip = usize::try_from(ask.from).unwrap_or(usize::MAX);
-    'page: for scenario in chosen() {
+    'page: for scenario in chosen().filter(|_| with_lines) {
         let newest = newest(state, scenario);
         let lines = newest.len().div_ceil(LINE_JOBS).max(1);
         if skip >= lines {
@@ -72,13 +80,23 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
     StatusReply {
         total: count(total),
         done: count(done),
-        running: count(running.len()),
+        running: count(running),
         results,
         // Only the shell knows when it began.
         serving_ms: 0,
         done_before: 0,
         workers,
         scenarios,
+        pace: Some(match state.paces.get(&ask.batch) {
+            Some(own) if !ask.batch.is_empty() => own.told(now),
+            Some(_) | None if ask.batch.is_empty() => state.pace.told(now),
+            Some(_) | None => Pacer::default().told(now),
+        }),
+        batches,
+        batches_left,
+        paused: overview::paused(state),
+        whys: ask.job.as_ref().map(|job| why::whys(state, job, now)),
+        table: ask.table.then(|| overview::table(state, now)),
     }
 }
 

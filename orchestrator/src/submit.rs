@@ -12,6 +12,9 @@ use crate::pipeline;
 use crate::state::{Job, JobState, Scenario, Tries, Worker};
 use crate::turn::Turn;
 
+/// Characters of a foreign version that are remembered.
+const VERSION_CHARS: usize = 60;
+
 impl Turn<'_> {
     pub(crate) fn hello(&mut self, hello: Hello, to: Token) {
         let wanted = &self.state.policy.code_version;
@@ -28,9 +31,19 @@ impl Turn<'_> {
             let policy = &self.state.policy;
             Welcome::Welcome { epoch: self.state.epoch, lease_ms: policy.lease_ms, beat_ms: policy.beat_ms }
         } else {
-            Welcome::Incompatible { range: wanted.clone() }
+            let range = wanted.clone();
+            self.turned_away(&hello.stages, &hello.code_version);
+            Welcome::Incompatible { range }
         };
         self.reply(to, Answer::Welcome(answer));
+    }
+
+    /// Remembers the version of a worker that is of another one than the jobs, for those who ask why nothing happens.
+    pub(crate) fn turned_away(&mut self, stages: &[Stage], version: &str) {
+        let version: String = version.chars().take(VERSION_CHARS).collect();
+        for stage in stages {
+            self.state.strangers.insert(*stage, version.clone());
+        }
     }
 
     pub(crate) fn submit(&mut self, submit: Submit, to: Token) {
@@ -94,7 +107,7 @@ impl Turn<'_> {
         let stages = pipeline::authored(&spec);
         let lead = pipeline::lead(&spec);
         let turn = self.state.take_turn(batch, priority);
-        let scenario = Scenario::new(batch, order, turn, spec);
+        let scenario = Scenario { since_ms: self.state.wall_ms(self.now), ..Scenario::new(batch, order, turn, spec) };
         self.state.scenarios.insert(id.clone(), scenario);
         self.state.by_order.insert(order, id.clone());
         self.scenario_mut(&id);
@@ -149,6 +162,7 @@ impl Turn<'_> {
             idem_key: None,
             delay_ms: 0,
             reason: String::new(),
+            since_ms: self.state.wall_ms(self.now),
             attempts: Vec::new(),
             result: None,
             children: Vec::new(),
@@ -313,6 +327,7 @@ impl Scenario {
             canceled: false,
             end: None,
             started: false,
+            since_ms: 0,
             jobs: Vec::new(),
             open: 0,
         }

@@ -8,6 +8,7 @@ use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::Notice;
 
 use crate::event::{Answer, Effect, Row, Token};
+use crate::pace::Pacer;
 use crate::pipeline;
 use crate::state::{Attempt, AttemptEnd, Job, JobState, Millis, Scenario, ScenarioEnd, State};
 
@@ -48,6 +49,7 @@ impl<'a> Turn<'a> {
     /// The effects: rows first, then answers, notices, hints.
     pub(crate) fn finish(mut self) -> Vec<Effect> {
         self.close_scenarios();
+        self.count_attempts();
         let mut effects: Vec<Effect> = Vec::new();
         for id in &self.scenarios {
             if let Some(scenario) = self.state.scenarios.get(id) {
@@ -73,6 +75,50 @@ impl<'a> Turn<'a> {
         effects.extend(self.hints.into_iter().map(Effect::Hint));
         effects.extend(self.ended);
         effects
+    }
+
+    /// Counts the attempts of this step that ended, once each, with what is known of them at its end.
+    fn count_attempts(&mut self) {
+        for (key, number) in &self.attempts {
+            let job = self.state.jobs.get_mut(key);
+            let attempt = job.and_then(|job| job.attempts.iter_mut().rev().find(|one| one.number == *number));
+            let Some(attempt) = attempt.filter(|attempt| !attempt.counted) else { continue };
+            let Some(end) = attempt.end else { continue };
+            attempt.counted = true;
+            let took = attempt.reported.then(|| self.now.saturating_sub(attempt.granted));
+            self.state.tally.ended(key, *number, (end, attempt.class), took, self.now);
+        }
+    }
+
+    /// Counts a job into its state, and out of it.
+    fn counted(&mut self, key: &JobKey, enters: bool) {
+        let Some(state) = self.state.jobs.get(key).map(|job| job.state) else { return };
+        if enters {
+            self.state.tally.enters(key.stage, state);
+        } else {
+            self.state.tally.leaves(key.stage, state);
+        }
+        // What a person looks at takes the time of a person.
+        if !matches!(state, JobState::Leased | JobState::Canceling) || key.stage == Stage::Review {
+            return;
+        }
+        let now = self.now;
+        for pacer in self.pacers(&key.scenario) {
+            if enters {
+                pacer.takes(now);
+            } else {
+                pacer.gives_back(now);
+            }
+        }
+    }
+
+    /// The clocks of work of everything and of the batch of a scenario.
+    fn pacers(&mut self, id: &ScenarioId) -> impl Iterator<Item = &mut Pacer> {
+        let state = &mut *self.state;
+        let batch = state.scenarios.get(id).map(|scenario| scenario.batch.clone()).unwrap_or_default();
+        let now = self.now;
+        let own = state.paces.entry(batch).or_insert_with(|| Pacer::new(now));
+        [&mut state.pace, own].into_iter()
     }
 
     pub(crate) fn reply(&mut self, to: Token, answer: Answer) {
@@ -152,9 +198,11 @@ impl<'a> Turn<'a> {
         }
         let reason = reason.into();
         let now = self.now;
+        let since_ms = self.state.wall_ms(now);
         if let Some(job) = self.job_mut(key) {
             job.state = next;
             job.reason = reason;
+            job.since_ms = since_ms;
             if next == JobState::Ready {
                 job.ready = now;
             }
@@ -187,6 +235,7 @@ impl<'a> Turn<'a> {
         }
         self.state.open_jobs += 1;
         self.state.jobs.insert(key.clone(), job);
+        self.counted(&key, true);
         self.jobs.insert(key);
     }
 
@@ -216,6 +265,7 @@ impl<'a> Turn<'a> {
 
     /// Takes a job out of the indices of its state.
     fn unindex(&mut self, key: &JobKey) {
+        self.counted(key, false);
         let place = self.ready_place(key);
         let Some(job) = self.state.jobs.get(key) else { return };
         let idem_key = job.idem_key.filter(|_| job.shares());
@@ -258,6 +308,7 @@ impl<'a> Turn<'a> {
 
     /// Puts a job into the indices of its state.
     pub(crate) fn index(&mut self, key: &JobKey) {
+        self.counted(key, true);
         let place = self.ready_place(key);
         let Some(job) = self.state.jobs.get(key) else { return };
         let idem_key = job.idem_key.filter(|_| job.shares());
@@ -332,6 +383,11 @@ impl<'a> Turn<'a> {
             return;
         }
         scenario.end = Some(end);
+        if end != ScenarioEnd::Canceled {
+            let now = self.now;
+            self.pacers(id).for_each(|pacer| pacer.ended(now));
+        }
+        let Some(scenario) = self.scenario(id) else { return };
         let counted = scenario.started && !scenario.spec.review;
         self.state.done += 1;
         if counted {

@@ -232,6 +232,32 @@ fn units(folder: &Path) {
 }
 
 #[test]
+fn promtool_takes_the_alerts_and_raises_each_on_the_figures_that_are_meant() {
+    if !has("promtool") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let rules = deployed("prometheus/socrates.rules.yml");
+    let (code, told) = said("promtool", &["check", "rules", &rules.display().to_string()], folder.path());
+    assert!(code == 0 && told.contains("SUCCESS: 7 rules found"), "{told}");
+    let elsewhere = tempfile::tempdir().unwrap();
+    let (code, told) =
+        said("promtool", &["check", "rules", &misspelt(&rules, "expr:", "exp:", elsewhere.path())], folder.path());
+    assert!(code != 0 && told.contains("field exp not found"), "{told}");
+    std::fs::copy(script("alerts.yml"), folder.path().join("alerts.yml")).unwrap();
+    let raised = |text: String| {
+        std::fs::write(folder.path().join("socrates.rules.yml"), text).unwrap();
+        said("promtool", &["test", "rules", "alerts.yml"], folder.path())
+    };
+    let text = std::fs::read_to_string(&rules).unwrap();
+    let (code, told) = raised(text.clone());
+    assert!(code == 0 && told.contains("SUCCESS"), "{told}");
+    // An alert that is never raised is noticed.
+    let (code, told) = raised(text.replace("> 600", "> 600000"));
+    assert!(code != 0 && told.contains("SocratesJobsWaitThoughWorkersAreFree"), "{told}");
+}
+
+#[test]
 fn systemd_understands_every_line_of_the_units() {
     if !has("systemd-analyze") {
         return;

@@ -27,6 +27,7 @@ mod requests;
 mod restarts;
 mod slow_author;
 mod soundness;
+mod steering;
 mod tables;
 mod training;
 

@@ -212,6 +212,36 @@ mod tests {
     }
 
     #[test]
+    fn a_reply_with_a_table_and_reasons_travels() {
+        use socrates_model::JobState;
+        use socrates_model::wire::{JobAsk, JobWhy, Part, StageStatus, StatusReply, Table, Wait};
+        let ask: JobAsk = "s-1/simulation/reference-1/r2".parse().unwrap();
+        let key = socrates_model::job::JobKey {
+            scenario: ask.scenario.clone(),
+            stage: Stage::Simulation,
+            item: ask.item.clone().unwrap(),
+            revision: 2,
+        };
+        let why = vec![Wait::NoWorker, Wait::Paused(Part::Stage(Stage::Paths)), Wait::Twin(key.clone())];
+        let stage = StageStatus {
+            stage: Stage::Paths,
+            states: [(JobState::Ready, 2), (JobState::Dead, 1)].into(),
+            paused: true,
+            p50_ms: Some(5),
+            waited_ms: None,
+        };
+        let reply = StatusReply {
+            whys: Some(vec![JobWhy { key, state: JobState::Ready, why }]),
+            table: Some(Table { epoch: 2, stages: vec![stage], ..Table::default() }),
+            ..StatusReply::default()
+        };
+        let bytes = encode(&Envelope::fresh("status", "", 0, reply.clone())).unwrap();
+        assert_eq!(decode::<StatusReply>("status", &bytes).unwrap().body, reply);
+        let bytes = encode(&Envelope::fresh("ask", "", 0, ask.clone())).unwrap();
+        assert_eq!(decode::<JobAsk>("ask", &bytes).unwrap().body, ask);
+    }
+
+    #[test]
     fn a_message_that_needs_a_newer_reader_is_refused_by_version() {
         let bytes = encode(&Envelope { v: 9, min_v: 9, ..sample() }).unwrap();
         assert!(matches!(decode::<Acquire>("acquire", &bytes), Err(LinkError::Incompatible { found: 9, .. })));

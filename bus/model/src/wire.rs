@@ -3,6 +3,10 @@
 //! Bodies only; the envelope and its encoding live in `link`. Unknown fields are ignored and new
 //! fields have defaults, so that neighbors one version apart understand each other.
 
+mod overview;
+mod steer;
+mod why;
+
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -15,6 +19,10 @@ use crate::planner_name::PlannerName;
 pub use crate::priority::Priority;
 use crate::role::Role;
 use crate::standing::{JobState, ScenarioEnd};
+
+pub use overview::{BatchStatus, Failed, Pace, StageStatus, Table, WorkerStatus};
+pub use steer::{Chosen, Left, Part, Steer, Steered};
+pub use why::{JobAsk, JobWhy, Wait};
 
 /// A worker introduces itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -353,16 +361,24 @@ pub enum Control {
     Cancel(String),
     /// Dead or failed jobs of a scenario once more, with a new budget.
     Requeue(ScenarioId),
+    /// Any of these and more, answered with what came of it: `Steered`.
+    Steer(Steer),
 }
 
 /// A client asks how things stand.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StatusAsk {
     /// Batch, or empty for all.
     pub batch: String,
     /// Give scenario lines from this index on (at most 200 a reply).
     #[serde(default)]
     pub from: u32,
+    /// Say why these jobs stand where they do, instead of scenario lines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub job: Option<JobAsk>,
+    /// Give the table of stages and workers, instead of scenario lines.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub table: bool,
 }
 
 /// How a scenario stands.
@@ -420,6 +436,24 @@ pub struct StatusReply {
     pub workers: BTreeMap<String, u32>,
     /// Lines from the asked index on.
     pub scenarios: Vec<ScenarioStatus>,
+    /// How fast they go; none from an orchestrator of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<Pace>,
+    /// Batches in the order in which they were submitted, with the first lines only; the newest where not all fit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub batches: Vec<BatchStatus>,
+    /// How many earlier batches are not listed.
+    #[serde(default)]
+    pub batches_left: u32,
+    /// What clients hold back.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub paused: Vec<Part>,
+    /// Why the jobs stand where they do that were asked for; none where none were, and from an orchestrator of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whys: Option<Vec<JobWhy>>,
+    /// The table, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<Table>,
 }
 
 /// Something that viewers and the live line may miss.

@@ -4,15 +4,18 @@ use std::time::Duration;
 
 use socrates_link::{Bus, LinkError, call, keys};
 use socrates_model::wire::{
-    PastAsk, PastEnd, PastPart, Priority, ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted,
+    Control, PastAsk, PastEnd, PastPart, Priority, ScenarioSpec, StatusAsk, StatusReply, Steer, Steered, Submit,
+    Submitted,
 };
 use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
-use crate::exit::Complaint;
+use crate::exit::{Code, Complaint};
 
 /// Limit of one call.
 const CALL: Duration = Duration::from_secs(2);
+/// Limit of a call that may move every job of a large batch.
+const STEERING: Duration = Duration::from_secs(20);
 /// Limit of one part of an artifact.
 pub(crate) const PART: Duration = Duration::from_secs(10);
 /// How long the orchestrator may be away before the run is given up.
@@ -59,9 +62,29 @@ pub(crate) async fn submit(
     Ok(fresh)
 }
 
-/// One page of statuses.
-pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
-    call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
+/// How things stand.
+pub(crate) async fn status(bus: &dyn Bus, ask: &StatusAsk) -> Result<StatusReply, LinkError> {
+    call(bus, keys::STATUS, "status", ask, CALL).await
+}
+
+/// What is said where the orchestrator does not answer.
+pub(crate) fn silent(why: LinkError) -> Complaint {
+    Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment").with_code(Code::Ours)
+}
+
+/// Has something done about jobs. It is asked once: without an answer, look how things stand before asking again.
+pub(crate) async fn steer(bus: &dyn Bus, steer: Steer) -> Result<Steered, Complaint> {
+    let wish = Control::Steer(steer);
+    let answer = call::<Control, Steered>(bus, keys::CONTROL, "control", &wish, STEERING).await;
+    answer.map_err(|why| {
+        if let LinkError::Refused { why, .. } = why {
+            return Complaint::input(
+                format!("the orchestrator refuses: {why}"),
+                "one of an earlier version does not know this; start `socrates cluster up` of this version",
+            );
+        }
+        silent(why)
+    })
 }
 
 /// How every scenario stands, in order of submission.

@@ -29,6 +29,8 @@ pub(crate) struct PastJob {
     pub(crate) remark: String,
     /// Outputs of its result.
     pub(crate) artifacts: Vec<Artifact>,
+    /// Wall time since which it stands so, ms since 1970; 0 where it is not known.
+    pub(crate) since_ms: u64,
 }
 
 /// Everything that was tried, by scenario.
@@ -61,6 +63,7 @@ impl History {
                 blames: result.as_ref().and_then(|result| Some(result.repair.as_ref()?.stage)),
                 remark: result.as_ref().map_or(job.reason, |result| result.remark.clone()),
                 artifacts: result.map(|result| result.artifacts).unwrap_or_default(),
+                since_ms: job.since_ms,
                 key: job.key,
             };
             history.jobs.entry(past.key.scenario.clone()).or_default().push(past);

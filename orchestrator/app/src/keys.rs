@@ -41,7 +41,9 @@ const fn purpose(role: Role) -> &'static str {
             "the machine of `socrates cluster up`, which listens or connects with it; it may do everything"
         }
         Role::Worker => "machines of `socrates cluster work`",
-        Role::Client => "people who use `socrates cluster submit`, `cluster collect` and `socrates status`",
+        Role::Client => {
+            "people who use `socrates cluster submit`, `collect`, `pause` and the like, `socrates status`, `top` and `explain`"
+        }
         Role::Viewer => "people who use `socrates watch` and `socrates view`; it reads runs and nothing else",
         Role::Driver => "programs that drive a robot or people from outside",
         Role::Router => "a machine of `zenohd -c router.json5`, where the orchestrator is not the router itself",

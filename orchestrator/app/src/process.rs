@@ -57,6 +57,9 @@ pub struct OrchestratorOptions {
     pub namespace: String,
     /// What a commit outlives.
     pub durable: Durability,
+    /// Address on which figures are served for Prometheus, such as `127.0.0.1:9464`; one that other machines can reach needs
+    /// `insecure`. None for nowhere.
+    pub metrics: Option<String>,
     /// Leave when standard input closes.
     pub tied: bool,
     /// No worker of before is alive: what they held is handed out again at once.
@@ -179,12 +182,36 @@ fn is_local(endpoint: &str) -> bool {
     host == "localhost" || host.parse::<std::net::IpAddr>().is_ok_and(|host| host.is_loopback())
 }
 
+/// The listener of the figures: on this machine alone, unless more is meant.
+async fn figures(talk: &Printer, address: &str, insecure: bool) -> Result<tokio::net::TcpListener, Complaint> {
+    let such = "for example --metrics 127.0.0.1:9464";
+    let cannot = |why: &dyn std::fmt::Display| {
+        Complaint::input(format!("figures cannot be served on `{address}`: {why}"), format!("another port, {such}"))
+    };
+    let mut found = tokio::net::lookup_host(address)
+        .await
+        .map_err(|why| Complaint::input(format!("`{address}` is no address with a port: {why}"), such))?;
+    let at = found.next().ok_or_else(|| Complaint::input(format!("`{address}` is no address of a machine"), such))?;
+    if !at.ip().is_loopback() && !insecure {
+        let open = format!("figures on `{address}` can be read from other machines, by anybody and in clear");
+        return Err(Complaint::input(open, format!("{such}; or say --insecure in a network that you trust")));
+    }
+    let listener = tokio::net::TcpListener::bind(at).await.map_err(|why| cannot(&why))?;
+    let at = listener.local_addr().map_err(|why| cannot(&why))?;
+    talk.warn(&format!("metrics    http://{at}/metrics"));
+    Ok(listener)
+}
+
 /// Runs the orchestrator until told to leave.
 pub async fn orchestrator(talk: &Printer, config: &Config, options: &OrchestratorOptions) -> Result<(), Complaint> {
     // What one run makes is made again; what a cluster holds is not.
     if !options.tied {
         folder::of_one_machine(&options.dir)?;
     }
+    let metrics = match &options.metrics {
+        Some(address) => Some(figures(talk, address, options.insecure).await?),
+        None => None,
+    };
     let bus: Arc<dyn Bus> = match (&options.listen, &options.connect) {
         (Some(listen), None) => {
             reachable(listen, options.insecure)?;
@@ -230,6 +257,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
         code_version: CODE_VERSION.to_owned(),
         alone: options.alone,
         waits: !options.tied,
+        metrics,
     };
     let served = orchestrate::serve(settings, bus.clone(), leave(options.tied)).await;
     bus.close().await;
@@ -311,6 +339,19 @@ pub(crate) fn host() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[tokio::test]
+    async fn figures_are_for_this_machine_unless_more_is_meant() {
+        let talk = Printer::to_nobody(crate::output::Format::Text);
+        assert!(figures(&talk, "127.0.0.1:0", false).await.is_ok());
+        let why = figures(&talk, "0.0.0.0:0", false).await.unwrap_err();
+        assert!(why.what.contains("`0.0.0.0:0`") && why.hint.contains("--insecure"), "{why}");
+        assert!(figures(&talk, "0.0.0.0:0", true).await.is_ok());
+        for bad in ["", "9464", "127.0.0.1", "127.0.0.1:x"] {
+            let why = figures(&talk, bad, false).await.unwrap_err();
+            assert!(why.what.contains(&format!("`{bad}`")) && why.hint.contains("9464"), "{why}");
+        }
+    }
 
     #[test]
     fn only_this_machine_is_listened_to_unless_more_is_meant() {

@@ -51,6 +51,12 @@ impl Speed {
         Self { per_s, left_s: (per_s > 0.0).then(|| open / per_s) }
     }
 
+    /// The same speed with this number of things still open.
+    #[expect(clippy::cast_precision_loss, reason = "counts of things are far below 2^52")]
+    pub(crate) fn for_open(self, open: u64) -> Self {
+        Self { left_s: (self.per_s > 0.0).then(|| open as f64 / self.per_s), ..self }
+    }
+
     /// `2.0 a second`, `3.1 a minute`, `12.0 an hour`.
     pub(crate) fn rate(&self) -> String {
         let (value, unit) = match self.per_s {

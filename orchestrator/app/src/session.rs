@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use socrates_kit::LocalBlobs;
 use socrates_link::{Overflow, keys};
-use socrates_model::wire::{Notice, Priority, ScenarioSpec, ScenarioStatus};
+use socrates_model::wire::{Notice, Priority, ScenarioSpec, ScenarioStatus, StatusAsk};
 use socrates_model::{Digest, ScenarioEnd, ScenarioId};
 use socrates_store::Reader;
 use tokio::time::Instant;
@@ -195,7 +195,7 @@ async fn follow(
         }
         looks_done = false;
         hold.check()?;
-        match status(bus.as_ref(), 0).await {
+        match status(bus.as_ref(), &StatusAsk::default()).await {
             Ok(reply) => {
                 last_heard = Instant::now();
                 if let Some(progress) = &mut progress {

@@ -5,18 +5,20 @@
 //! folder   ─► manifest │ library.json │ the job store, only read (and the orchestrator's answer while there is one)
 //! ```
 
+mod batches;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
 use serde_json::{Value, json};
 use socrates_link::rules::Role;
-use socrates_model::wire::StatusReply;
+use socrates_model::wire::{BatchStatus, Pace, Part, StatusAsk, StatusReply};
 use socrates_model::{JobState, ScenarioEnd};
 use socrates_store::Reader;
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::Complaint;
 use crate::files::shell;
 use crate::history::History;
 use crate::output::Printer;
@@ -24,8 +26,13 @@ use crate::progress::{Speed, span};
 use crate::supervise::endpoint;
 use crate::{batch, bundle, calls, library_index, place, process, stages, work};
 
+pub(crate) use batches::part_words;
+
 /// How long an orchestrator may take to answer before the folder counts as one where nobody works.
 const ANSWER: Duration = Duration::from_secs(5);
+
+/// How long nobody has to hold a job until that is called idle, ms.
+const IDLE_MS: u64 = 2_000;
 
 /// Which scenarios are listed under the eight lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +50,7 @@ pub enum Listed {
 enum Phase {
     #[default]
     GoingOn,
+    Idle,
     Stopped,
     Finished,
 }
@@ -51,6 +59,7 @@ impl Phase {
     const fn name(self) -> &'static str {
         match self {
             Self::GoingOn => "going_on",
+            Self::Idle => "idle",
             Self::Stopped => "stopped",
             Self::Finished => "finished",
         }
@@ -77,8 +86,18 @@ struct Standing {
     results: BTreeMap<ScenarioEnd, u64>,
     /// Since when, s, and how fast; only while somebody works.
     speed: Option<(f64, Speed)>,
+    /// How long nobody has held a job, s.
+    idle_s: Option<f64>,
     workers: BTreeMap<String, u32>,
     rows: Vec<Row>,
+    batches: Vec<BatchStatus>,
+    batches_left: u32,
+    paused: Vec<Part>,
+}
+
+/// Seconds of milliseconds.
+fn seconds(ms: u64) -> f64 {
+    Duration::from_millis(ms).as_secs_f64()
 }
 
 impl Standing {
@@ -93,12 +112,29 @@ impl Standing {
 
     /// What the orchestrator says beside the counts.
     fn with(mut self, reply: &StatusReply) -> Self {
-        let elapsed = Duration::from_millis(reply.serving_ms);
-        let speed = Speed::of(u64::from(reply.done), u64::from(reply.total), u64::from(reply.done_before), elapsed);
+        let (total, done) = (u64::from(reply.total), u64::from(reply.done));
+        self.speed = Some(match reply.pace {
+            Some(Pace { ended, work_ms, .. }) => {
+                let made = Speed::of(u64::from(ended), u64::from(ended), 0, Duration::from_millis(work_ms));
+                (seconds(work_ms), made.for_open(total.saturating_sub(done)))
+            }
+            // An orchestrator of before says only since when it serves.
+            None => {
+                let elapsed = Duration::from_millis(reply.serving_ms);
+                (elapsed.as_secs_f64(), Speed::of(done, total, u64::from(reply.done_before), elapsed))
+            }
+        });
+        // Between two jobs of a chain nobody holds one for a moment.
+        let idle = reply.pace.and_then(|pace| pace.idle_ms).filter(|ms| *ms >= IDLE_MS || done == total);
+        self.idle_s = idle.map(seconds);
+        if self.phase == Phase::GoingOn && self.idle_s.is_some() {
+            self.phase = if total > 0 && done == total { Phase::Finished } else { Phase::Idle };
+        }
+        (self.batches, self.batches_left) = (reply.batches.clone(), reply.batches_left);
+        self.paused.clone_from(&reply.paused);
         self.total = u64::from(reply.total);
         self.running = u64::from(reply.running);
         self.results = reply.results.iter().map(|(result, count)| (*result, u64::from(*count))).collect();
-        self.speed = Some((elapsed.as_secs_f64(), speed));
         self.workers.clone_from(&reply.workers);
         self
     }
@@ -111,15 +147,41 @@ impl Standing {
         self.results.get(&ScenarioEnd::Failed).copied().unwrap_or(0)
     }
 
+    /// Whether it goes on.
+    fn phase_words(&self) -> String {
+        let (total, done) = (self.total, self.done());
+        match self.phase {
+            Phase::GoingOn => "going on".to_owned(),
+            Phase::Idle if total == 0 => "nothing was submitted".to_owned(),
+            Phase::Idle => format!("idle for {}", span(self.idle_s.unwrap_or(0.0))),
+            Phase::Stopped => format!("stopped at {done} of {total}; the same command resumes"),
+            Phase::Finished => "finished".to_owned(),
+        }
+    }
+
+    /// How fast, and how long yet.
+    fn rate_words(&self) -> (String, String) {
+        let rate = self.speed.filter(|(_, speed)| speed.per_s > 0.0);
+        let rate = rate.map_or_else(
+            || "none".to_owned(),
+            |(since, speed)| format!("{} over {} of work", speed.rate(), span(since)),
+        );
+        let left = match (self.phase, self.speed.and_then(|(_, speed)| speed.left_s)) {
+            (Phase::Finished, _) => "nothing".to_owned(),
+            (Phase::GoingOn, Some(left)) => format!("about {}", span(left)),
+            (Phase::Idle, Some(left)) if self.total > self.done() => {
+                format!("about {} of work, once something moves again", span(left))
+            }
+            (Phase::GoingOn | Phase::Idle | Phase::Stopped, _) => "not known".to_owned(),
+        };
+        (rate, left)
+    }
+
     /// The eight lines.
     fn lines(&self) -> [String; 8] {
         let (total, done, failed) = (self.total, self.done(), self.failed());
         let word = Path::new(&self.what);
-        let phase = match self.phase {
-            Phase::GoingOn => "going on".to_owned(),
-            Phase::Stopped => format!("stopped at {done} of {total}; the same command resumes"),
-            Phase::Finished => "finished".to_owned(),
-        };
+        let phase = self.phase_words();
         let share = (done * 100).checked_div(total).map_or_else(String::new, |share| format!(" ({share} %)"));
         let waiting = total.saturating_sub(done).saturating_sub(self.running);
         let why =
@@ -129,14 +191,7 @@ impl Standing {
             self.results.iter().filter(|(result, _)| **result != ScenarioEnd::Failed).collect();
         verdicts.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
         let verdicts = list(verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect());
-        let rate = self.speed.filter(|(_, speed)| speed.per_s > 0.0);
-        let rate =
-            rate.map_or_else(|| "none".to_owned(), |(since, speed)| format!("{} over {}", speed.rate(), span(since)));
-        let left = match (self.phase, self.speed.and_then(|(_, speed)| speed.left_s)) {
-            (Phase::Finished, _) => "nothing".to_owned(),
-            (Phase::GoingOn, Some(left)) => format!("about {}", span(left)),
-            (Phase::GoingOn | Phase::Stopped, _) => "not known".to_owned(),
-        };
+        let (rate, left) = self.rate_words();
         let workers = list(self.workers.iter().map(|(stage, count)| format!("{count} {stage}")).collect());
         [
             format!("made in    {} · {phase}", self.what),
@@ -167,20 +222,42 @@ impl Standing {
         json!({
             "what": self.what, "phase": self.phase.name(), "total": self.total, "done": self.done(), "running": self.running,
             "failed": self.failed(), "verdicts": self.results, "rate_per_s": speed.map(|speed| speed.per_s), "left_s": left,
-            "workers": self.workers, "scenarios": self.listed(which).iter().map(row).collect::<Vec<_>>(),
+            "idle_s": self.idle_s, "batches": self.batches, "paused": self.paused, "workers": self.workers, "scenarios": self.listed(which).iter().map(row).collect::<Vec<_>>(),
         })
     }
 }
 
-/// Shows how the jobs of a folder or endpoint stand.
-pub async fn status(talk: &Printer, config: &Config, what: &str, listed: Listed) -> Result<(), Complaint> {
+/// What an orchestrator says of everything, in three lines for the head of a table.
+pub(crate) fn head(what: &str, reply: &StatusReply) -> [String; 3] {
+    let standing = Standing::of_rows(what, Phase::GoingOn, Vec::new()).with(reply);
+    let (rate, left) = standing.rate_words();
+    let (total, done, failed, running) = (standing.total, standing.done(), standing.failed(), standing.running);
+    let paused: Vec<String> = standing.paused.iter().map(part_words).collect();
+    let paused = if paused.is_empty() { "nothing".to_owned() } else { paused.join(" · ") };
+    [
+        format!("{what} · {}", standing.phase_words()),
+        format!("{done} of {total} done · {failed} failed · {running} running · paused: {paused}"),
+        format!("rate {rate} · left {left}"),
+    ]
+}
+
+/// Shows how the jobs of a folder or endpoint stand, or those of one batch.
+///
+/// # Errors
+/// Nothing is made there, no orchestrator answers, or there is no such batch.
+pub async fn status(
+    talk: &Printer,
+    config: &Config,
+    what: &str,
+    batch: Option<&str>,
+    listed: Listed,
+) -> Result<(), Complaint> {
     let folder = Path::new(what);
-    let standing = if folder.exists() {
-        of_folder(config, what, folder, listed).await?
-    } else {
-        of_endpoint(config, what, listed).await?
-    };
-    for line in standing.lines() {
+    let wish = Wish { what, batch: batch.unwrap_or_default(), listed };
+    let standing =
+        if folder.exists() { of_folder(config, wish, folder).await? } else { of_endpoint(config, wish).await? };
+    let further = batches::lines(&standing.paused, &standing.batches, standing.batches_left, socrates_link::wall_ms());
+    for line in standing.lines().into_iter().chain(further) {
         talk.line(&line);
     }
     for row in standing.listed(listed) {
@@ -191,20 +268,48 @@ pub async fn status(talk: &Printer, config: &Config, what: &str, listed: Listed)
     Ok(())
 }
 
+/// What is asked for.
+#[derive(Debug, Clone, Copy)]
+struct Wish<'a> {
+    what: &'a str,
+    /// One batch; empty for all.
+    batch: &'a str,
+    listed: Listed,
+}
+
+impl Wish<'_> {
+    fn page(self, from: u32) -> StatusAsk {
+        StatusAsk { batch: self.batch.to_owned(), from, ..StatusAsk::default() }
+    }
+
+    /// Refuses a batch that is not there.
+    fn check(self, reply: &StatusReply) -> Result<(), Complaint> {
+        if self.batch.is_empty() || reply.total > 0 {
+            return Ok(());
+        }
+        let names: Vec<String> = reply.batches.iter().map(|batch| format!("`{}`", batch.name)).collect();
+        Err(no_batch(self.batch, &names))
+    }
+}
+
+fn no_batch(name: &str, there: &[String]) -> Complaint {
+    let there = if there.is_empty() { "none is there".to_owned() } else { format!("there are: {}", there.join(", ")) };
+    Complaint::input(format!("there is no batch `{name}`"), there)
+}
+
 /// What the orchestrator at an endpoint says.
-async fn of_endpoint(config: &Config, what: &str, listed: Listed) -> Result<Standing, Complaint> {
+async fn of_endpoint(config: &Config, wish: Wish<'_>) -> Result<Standing, Complaint> {
+    let Wish { what, batch, listed } = wish;
     let (address, namespace) = endpoint(what).ok_or_else(|| nothing(what))?;
     let bus = process::client(config, Role::Client, &address, &namespace, "watch").await?;
-    let silent = |why: socrates_link::LinkError| {
-        Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment")
-            .with_code(Code::Ours)
-    };
-    let first = calls::status(bus.as_ref(), 0).await.map_err(silent)?;
+    let mut first = calls::status(bus.as_ref(), &wish.page(0)).await.map_err(calls::silent)?;
+    wish.check(&first)?;
+    first.batches.retain(|one| batch.is_empty() || one.name == batch);
     let mut rows = Vec::new();
     let mut from = 0;
     // One scenario is told with the counts; more are asked for page by page.
     while listed != Listed::None || (from == 0 && first.total == 1) {
-        let page = calls::status(bus.as_ref(), from).await.map_err(silent)?.scenarios;
+        let page = calls::status(bus.as_ref(), &wish.page(from)).await.map_err(calls::silent)?.scenarios;
         if page.is_empty() {
             break;
         }
@@ -220,12 +325,17 @@ async fn of_endpoint(config: &Config, what: &str, listed: Listed) -> Result<Stan
 }
 
 /// What lies in a folder: a bundle, a library, something that is being made, or several of them.
-async fn of_folder(config: &Config, what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
+async fn of_folder(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Standing, Complaint> {
+    let Wish { what, batch, .. } = wish;
+    if !batch.is_empty() {
+        let hint = "name the endpoint of the orchestrator, such as tcp/127.0.0.1:7447@main";
+        return Err(Complaint::input(format!("`{what}` is a folder, and batches are of a cluster"), hint));
+    }
     if let Some(rows) = made(folder) {
         return Ok(Standing::of_rows(what, Phase::Finished, rows));
     }
     if folder.join(place::WORK).is_dir() {
-        return being_made(config, what, folder, listed).await;
+        return being_made(config, wish, folder).await;
     }
     // A folder of bundles, perhaps with some that are not finished.
     let mut below: Vec<_> = std::fs::read_dir(folder)
@@ -240,9 +350,10 @@ async fn of_folder(config: &Config, what: &str, folder: &Path, listed: Listed) -
         if let Some(found) = made(&dir) {
             rows.extend(found);
         } else if dir.join(place::WORK).is_dir() {
-            let found = being_made(config, what, &dir, listed).await?;
+            let found = being_made(config, wish, &dir).await?;
             let open = found.phase;
-            phase = if phase == Phase::Finished || open == Phase::GoingOn { open } else { phase };
+            let goes_on = matches!(open, Phase::GoingOn | Phase::Idle);
+            phase = if phase == Phase::Finished || goes_on { open } else { phase };
             rows.extend(from_store(&dir, true)?);
         }
     }
@@ -269,20 +380,21 @@ fn made(folder: &Path) -> Option<Vec<Row>> {
 }
 
 /// A folder with a job store: its rows, and what the orchestrator says where one works.
-async fn being_made(config: &Config, what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
-    let rows = from_store(folder, listed != Listed::None)?;
+async fn being_made(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Standing, Complaint> {
+    let rows = from_store(folder, wish.listed != Listed::None)?;
     let ended = place::ended(folder).is_some();
-    let standing = Standing::of_rows(what, if ended { Phase::Finished } else { Phase::Stopped }, rows);
+    let standing = Standing::of_rows(wish.what, if ended { Phase::Finished } else { Phase::Stopped }, rows);
     let endpoint = endpoint(&folder.display().to_string()).filter(|_| !ended);
     let Some((address, namespace)) = endpoint else { return Ok(standing) };
     let answer = tokio::time::timeout(ANSWER, async {
         let bus = process::client(config, Role::Client, &address, &namespace, "watch").await.ok()?;
-        let reply = calls::status(bus.as_ref(), 0).await.ok();
+        let reply = calls::status(bus.as_ref(), &wish.page(0)).await.ok();
         bus.close().await;
         reply
     });
     Ok(match answer.await.ok().flatten() {
-        Some(reply) => Standing { phase: Phase::GoingOn, ..standing.with(&reply) },
+        // The one batch of a run needs no name.
+        Some(reply) => Standing { batches: Vec::new(), ..Standing { phase: Phase::GoingOn, ..standing }.with(&reply) },
         None => standing,
     })
 }
@@ -347,8 +459,9 @@ mod tests {
             ]),
             serving_ms: 10_000,
             done_before: 4,
+            pace: Some(Pace { ended: 20, work_ms: 10_000, idle_ms: None }),
             workers: BTreeMap::from([("paths".to_owned(), 1), ("simulation".to_owned(), 2)]),
-            scenarios: Vec::new(),
+            ..StatusReply::default()
         }
     }
 
@@ -361,7 +474,7 @@ mod tests {
             "running    5 · 31 waiting",
             "failed     1 · `socrates status --failed 'my lib'` says why",
             "verdicts   20 realised · 3 contradicted",
-            "rate       2.0 a second over 10 s",
+            "rate       2.0 a second over 10 s of work",
             "left       about 18 s",
             "workers    1 paths · 2 simulation",
         ];
@@ -369,6 +482,44 @@ mod tests {
         let object = standing.object(Listed::None);
         assert_eq!((object["rate_per_s"].as_f64(), object["left_s"].as_f64()), (Some(2.0), Some(18.0)));
         assert_eq!((&object["phase"], &object["failed"]), (&json!("going_on"), &json!(1)));
+    }
+
+    #[test]
+    fn what_nobody_works_on_is_idle_and_keeps_the_rate_of_its_work() {
+        // Served for an hour, in ten seconds of which twenty were made.
+        let pace = Pace { ended: 20, work_ms: 10_000, idle_ms: Some(185_000) };
+        let idle = StatusReply { serving_ms: 3_600_000, pace: Some(pace), ..reply() };
+        let standing = Standing::of_rows("tcp/x:1", Phase::GoingOn, Vec::new()).with(&idle);
+        let lines = standing.lines();
+        assert_eq!(lines[0], "made in    tcp/x:1 · idle for 3 min 5 s");
+        assert_eq!(lines[5], "rate       2.0 a second over 10 s of work");
+        assert_eq!(lines[6], "left       about 18 s of work, once something moves again");
+        assert_eq!(
+            (&standing.object(Listed::None)["phase"], standing.object(Listed::None)["left_s"].as_f64()),
+            (&json!("idle"), None)
+        );
+        // Between two jobs nobody holds one for a moment.
+        let pace = Pace { idle_ms: Some(40), ..pace };
+        let moment = StatusReply { pace: Some(pace), ..reply() };
+        assert_eq!(Standing::of_rows("x", Phase::GoingOn, Vec::new()).with(&moment).phase, Phase::GoingOn);
+        // An orchestrator of before tells no pace.
+        let before = StatusReply { pace: None, ..reply() };
+        assert_eq!(
+            Standing::of_rows("x", Phase::GoingOn, Vec::new()).with(&before).lines()[6],
+            "left       about 18 s"
+        );
+        let done = StatusReply { done: 60, results: BTreeMap::from([(ScenarioEnd::Failed, 60)]), ..idle };
+        assert_eq!(Standing::of_rows("x", Phase::GoingOn, Vec::new()).with(&done).phase, Phase::Finished);
+    }
+
+    #[test]
+    fn a_batch_that_is_not_there_is_answered_with_those_that_are() {
+        let batch = |name: &str| BatchStatus { name: name.to_owned(), ..BatchStatus::default() };
+        let told = StatusReply { total: 0, batches: vec![batch("night"), batch("day")], ..reply() };
+        let wish = |batch| Wish { what: "x", batch, listed: Listed::None };
+        let why = wish("nigth").check(&told).unwrap_err();
+        assert!(why.what.contains("`nigth`") && why.hint.contains("`night`, `day`"), "{why}");
+        wish("").check(&told).unwrap();
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 use socrates_link::rules::Role;
 use socrates_link::{Bus, Overflow, keys};
+use socrates_model::wire::StatusAsk;
 use socrates_model::{AgentState, EventKind, JobState, RunId, SimTime};
 use socrates_stream::{Sight, TickRange, Watch};
 
@@ -190,7 +191,7 @@ async fn announced(bus: &dyn Bus) -> Result<RunId, Complaint> {
 
 async fn going_on(bus: &dyn Bus) -> Option<RunId> {
     // A viewer with keys may not ask the orchestrator, but every run.
-    let Ok(reply) = calls::status(bus, 0).await else { return told_of_itself(bus).await };
+    let Ok(reply) = calls::status(bus, &StatusAsk::default()).await else { return told_of_itself(bus).await };
     let jobs = reply.scenarios.iter().flat_map(|scenario| &scenario.jobs);
     let mut leased =
         jobs.filter(|job| job.key.stage == socrates_model::job::Stage::Simulation && job.state == JobState::Leased);

@@ -408,7 +408,11 @@ impl Batch<'_> {
                 self.recorded(to, said);
             }
             Answer::Beat(reply) => self.told(to, reply),
-            Answer::Acquired(_) | Answer::Recorded(_) | Answer::Welcome(_) | Answer::Submitted(_) => {}
+            Answer::Acquired(_)
+            | Answer::Recorded(_)
+            | Answer::Welcome(_)
+            | Answer::Submitted(_)
+            | Answer::Steered(_) => {}
         }
     }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::ScenarioId;
-use socrates_model::job::JobKey;
+use socrates_model::job::{JobKey, Stage};
 use socrates_orchestrator::{Attempt, Job, JobResult, Row, Scenario, Snapshot};
 
 /// The rows that were committed.
@@ -15,6 +15,7 @@ pub(crate) struct Rows {
     results: BTreeMap<JobKey, JobResult>,
     next_seq: u64,
     paused: Vec<String>,
+    paused_stages: Vec<Stage>,
     /// Results of jobs that were written more than once.
     pub(crate) doubled: u64,
 }
@@ -29,6 +30,7 @@ impl Rows {
             Row::Result(key, result) => self.doubled += u64::from(self.results.insert(key, *result).is_some()),
             Row::Event(_, notice) => self.next_seq = notice.seq.saturating_add(1),
             Row::Paused(paused) => self.paused = paused,
+            Row::PausedStages(paused) => self.paused_stages = paused,
             Row::Text(..) | Row::Dead(..) | Row::Revived(_) => {}
         }
     }
@@ -42,6 +44,7 @@ impl Rows {
             attempts: self.attempts.iter().map(|((key, _), attempt)| (key.clone(), attempt.clone())).collect(),
             results: self.results.iter().map(|(key, result)| (key.clone(), result.clone())).collect(),
             paused: self.paused.clone(),
+            paused_stages: self.paused_stages.clone(),
             next_seq: self.next_seq,
         }
     }

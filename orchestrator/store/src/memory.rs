@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::job::JobKey;
+use socrates_model::job::{JobKey, Stage};
 use socrates_model::{Digest, ScenarioId};
 use socrates_orchestrator::{Attempt, Job, JobResult, Row, Scenario, Snapshot};
 
@@ -20,6 +20,7 @@ pub struct MemoryStore {
     texts: BTreeMap<Digest, String>,
     dead: BTreeMap<JobKey, String>,
     paused: Vec<String>,
+    paused_stages: Vec<Stage>,
 }
 
 impl MemoryStore {
@@ -39,6 +40,7 @@ impl MemoryStore {
             attempts: self.attempts.iter().map(|((key, _), attempt)| (key.clone(), attempt.clone())).collect(),
             results: self.results.iter().map(|(key, result)| (key.clone(), result.clone())).collect(),
             paused: self.paused.clone(),
+            paused_stages: self.paused_stages.clone(),
             next_seq: self.next_seq.max(1),
         }
     }
@@ -79,6 +81,7 @@ impl Store for MemoryStore {
                     self.dead.remove(&key);
                 }
                 Row::Paused(paused) => self.paused = paused,
+                Row::PausedStages(stages) => self.paused_stages = stages,
             }
         }
         Ok(())

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use socrates_model::{ScenarioEnd, ScenarioId};
 use socrates_orchestrator::Snapshot;
 
-use crate::sqlite::failure;
+use crate::sqlite::{PAUSED, PAUSED_STAGES, failure, listed};
 use crate::{StoreError, schema};
 
 /// How one scenario stands.
@@ -67,7 +67,8 @@ impl Reader {
         Ok(standings)
     }
 
-    /// Every row that tells what was tried: scenarios in order of submission, jobs, attempts and results. No reign begins.
+    /// Every row that tells what was tried: scenarios in order of submission, jobs, attempts and results, and what is paused. No reign
+    /// begins.
     ///
     /// # Errors
     /// [`StoreError::Sqlite`] and [`StoreError::Row`].
@@ -78,11 +79,13 @@ impl Reader {
             jobs: bodies(connection, &self.path, "job", "order by job", &[])?,
             attempts: bodies(connection, &self.path, "attempt", "order by job, number", &[])?,
             results: bodies(connection, &self.path, "result", "order by job", &[])?,
+            paused: listed(connection, &self.path, PAUSED)?,
+            paused_stages: listed(connection, &self.path, PAUSED_STAGES)?,
             ..Snapshot::default()
         })
     }
 
-    /// The rows of one scenario, as of one moment; without any where it is unknown.
+    /// The rows of one scenario and what is paused, as of one moment; without a scenario where it is unknown.
     ///
     /// # Errors
     /// [`StoreError::Sqlite`] and [`StoreError::Row`].
@@ -101,6 +104,8 @@ impl Reader {
             jobs: bodies(&moment, &self.path, "job", own, &keys)?,
             attempts: bodies(&moment, &self.path, "attempt", &numbered, &keys)?,
             results: bodies(&moment, &self.path, "result", own, &keys)?,
+            paused: listed(&moment, &self.path, PAUSED)?,
+            paused_stages: listed(&moment, &self.path, PAUSED_STAGES)?,
             ..Snapshot::default()
         };
         moment.commit().map_err(failed)?;

@@ -13,6 +13,10 @@ use socrates_orchestrator::{Row, Snapshot};
 use crate::reader::bodies;
 use crate::{OUTBOX, SCHEMA_VERSION, Store, StoreError, check, schema};
 
+/// Names under which the paused batches and the paused stages stand.
+pub(crate) const PAUSED: &str = "paused";
+pub(crate) const PAUSED_STAGES: &str = "paused_stages";
+
 /// The job store of one orchestrator. Do not put it on a network file system: its locks and its log
 /// need a local disk.
 #[derive(Debug)]
@@ -104,10 +108,7 @@ impl SqliteStore {
     }
 
     fn meta(&self, name: &str) -> Result<Option<String>, StoreError> {
-        self.connection
-            .query_row("select value from meta where name = ?1", [name], |row| row.get(0))
-            .optional()
-            .map_err(|source| self.failure(source))
+        meta(&self.connection, &self.path, name)
     }
 
     fn number(&self, name: &str) -> Result<Option<u64>, StoreError> {
@@ -130,17 +131,14 @@ impl SqliteStore {
             .connection
             .query_row("select coalesce(max(seq), 0) from event", [], |row| row.get(0))
             .map_err(|source| self.failure(source))?;
-        let paused = match self.meta("paused")? {
-            Some(text) => serde_json::from_str(&text).map_err(|source| StoreError::Row { table: "meta", source })?,
-            None => Vec::new(),
-        };
         Ok(Snapshot {
             epoch: self.number("epoch")?.unwrap_or(0),
             scenarios: self.bodies("scenario", "place")?,
             jobs: self.bodies("job", "job")?,
             attempts: self.bodies("attempt", "job, number")?,
             results: self.bodies("result", "job")?,
-            paused,
+            paused: listed(&self.connection, &self.path, PAUSED)?,
+            paused_stages: listed(&self.connection, &self.path, PAUSED_STAGES)?,
             next_seq: u64::try_from(last).unwrap_or(0) + 1,
         })
     }
@@ -204,6 +202,21 @@ impl Store for SqliteStore {
     }
 }
 
+fn meta(connection: &Connection, path: &Path, name: &str) -> Result<Option<String>, StoreError> {
+    let asked = connection.query_row("select value from meta where name = ?1", [name], |row| row.get(0)).optional();
+    asked.map_err(|source| failure(path, source))
+}
+
+/// A list that stands under a name; empty where there is none.
+pub(crate) fn listed<T: DeserializeOwned>(
+    connection: &Connection,
+    path: &Path,
+    name: &str,
+) -> Result<Vec<T>, StoreError> {
+    let Some(text) = meta(connection, path, name)? else { return Ok(Vec::new()) };
+    serde_json::from_str(&text).map_err(|source| StoreError::Row { table: "meta", source })
+}
+
 type Failed<'a> = dyn Fn(rusqlite::Error) -> StoreError + 'a;
 
 fn write(to: &Connection, row: &Row, failed: &Failed<'_>) -> Result<(), StoreError> {
@@ -263,8 +276,10 @@ fn write(to: &Connection, row: &Row, failed: &Failed<'_>) -> Result<(), StoreErr
         Row::Dead(key, reason) => run("insert or replace into dead values(?1, ?2)", params![key.to_string(), reason]),
         Row::Revived(key) => run("delete from dead where job = ?1", params![key.to_string()]),
         Row::Paused(paused) => {
-            let body = body("meta", paused)?;
-            run("insert or replace into meta values('paused', ?1)", params![body])
+            run("insert or replace into meta values(?1, ?2)", params![PAUSED, body("meta", paused)?])
+        }
+        Row::PausedStages(stages) => {
+            run("insert or replace into meta values(?1, ?2)", params![PAUSED_STAGES, body("meta", stages)?])
         }
     }
 }

@@ -15,6 +15,7 @@
 //! | [`run`], [`hub`], [`air`] | runs as all viewers share them, and where they come from |
 //! | [`guard`], [`server`], [`http`], [`page`], [`files`] | the door |
 //! | [`fox`] | Foxglove's protocol and messages, pure |
+//! | [`plain`] | the same door for one text: figures of an orchestrator |
 //!
 //! *Never here:* a publication or a question that a run would notice besides being watched, a path out of a URL, a queue for a viewer.
 
@@ -29,6 +30,7 @@ pub mod http;
 pub mod hub;
 pub mod judge;
 pub mod page;
+pub mod plain;
 pub mod run;
 pub mod scene;
 pub mod server;

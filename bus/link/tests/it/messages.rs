@@ -171,6 +171,7 @@ fn of_clients() -> Vec<Kind> {
         done_before: 1,
         workers: BTreeMap::from([("paths".to_owned(), 2)]),
         scenarios: vec![ScenarioStatus { id: scenario.clone(), done: true, result: Some(done), jobs: vec![job] }],
+        ..StatusReply::default()
     };
     let notice = Notice {
         seq: 8,
@@ -191,7 +192,7 @@ fn of_clients() -> Vec<Kind> {
         kind("control.resume", Control::Resume(String::new())),
         kind("control.cancel", Control::Cancel("b".to_owned())),
         kind("control.requeue", Control::Requeue(scenario.clone())),
-        kind("status", StatusAsk { batch: "b".to_owned(), from: 200 }),
+        kind("status", StatusAsk { batch: "b".to_owned(), from: 200, ..StatusAsk::default() }),
         kind("status.answer", status),
         kind("notice", notice),
         kind("past.ends", PastAsk::Ends { from: 4 }),

@@ -199,7 +199,7 @@ async fn a_typed_call_comes_back_and_a_refusal_is_permanent(pair: &Pair) {
         }
     });
     ask_until_served(&*pair.b, keys::STATUS, &[]).await;
-    let ask = |batch: &str| StatusAsk { batch: batch.into(), from: 0 };
+    let ask = |batch: &str| StatusAsk { batch: batch.into(), ..StatusAsk::default() };
     let reply: StatusReply = call(&*pair.b, keys::STATUS, "status", &ask("known"), SOON).await.unwrap();
     assert_eq!(reply.total, 3);
     let refused = call::<_, StatusReply>(&*pair.b, keys::STATUS, "status", &ask("x"), SOON).await.unwrap_err();

@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 use socrates_kit::{Blobs, Done, Failure, Job, LocalBlobs, Output, Stage, WorkerConfig, media};
-use socrates_link::Bus;
 use socrates_link::rules::Role as Part;
+use socrates_link::{Bus, LinkError};
 use socrates_model::job::Stage as StageName;
-use socrates_model::wire::{Priority, ScenarioSpec};
+use socrates_model::wire::{Priority, ScenarioSpec, StatusAsk, StatusReply};
 use socrates_model::{PlannerName, Role, ScenarioId, Verdict};
 
 use super::machine;
@@ -169,7 +169,7 @@ async fn reached(config: &Config, connect: &str) -> Result<Arc<dyn Bus>, Complai
         let bus = process::client(config, Part::Client, connect, "main", "bench").await;
         if let Ok(bus) = bus {
             while begun.elapsed() < START {
-                if calls::status(bus.as_ref(), u32::MAX).await.is_ok() {
+                if standing(bus.as_ref()).await.is_ok() {
                     return Ok(bus);
                 }
                 tokio::time::sleep(PAUSE).await;
@@ -181,11 +181,16 @@ async fn reached(config: &Config, connect: &str) -> Result<Arc<dyn Bus>, Complai
     }
 }
 
+/// The figures of how it stands, without a line of any scenario.
+async fn standing(bus: &dyn Bus) -> Result<StatusReply, LinkError> {
+    calls::status(bus, &StatusAsk { from: u32::MAX, ..StatusAsk::default() }).await
+}
+
 /// Waits for so many workers of every stage.
 async fn waited(bus: &dyn Bus, workers: u32) -> Result<(), Complaint> {
     let begun = Instant::now();
     while begun.elapsed() < START {
-        if let Ok(reply) = calls::status(bus, u32::MAX).await
+        if let Ok(reply) = standing(bus).await
             && StageName::WORKERS.iter().all(|stage| reply.workers.get(stage.name()).is_some_and(|n| *n >= workers))
         {
             return Ok(());
@@ -254,11 +259,11 @@ async fn round_trip(config: &Config, connect: &str, bus: &dyn Bus) -> Result<f64
 async fn alone(bus: &dyn Bus, spec: &ScenarioSpec) -> Result<f64, Complaint> {
     let mut times = Vec::new();
     for one in named(spec, "alone", u32::try_from(ALONE).unwrap_or(u32::MAX))? {
-        let before = calls::status(bus, u32::MAX).await.map_err(|why| super::ours(why.to_string()))?.done;
+        let before = standing(bus).await.map_err(|why| super::ours(why.to_string()))?.done;
         let begun = Instant::now();
         calls::submit(bus, "alone", Priority::Normal, vec![one]).await?;
         // Asked as often as it answers: a pause would be measured with it.
-        while calls::status(bus, u32::MAX).await.is_ok_and(|reply| reply.done == before) {
+        while standing(bus).await.is_ok_and(|reply| reply.done == before) {
             if begun.elapsed() > START {
                 return Err(super::ours("a scenario was not made".to_owned()));
             }
@@ -286,15 +291,15 @@ struct Made {
 
 /// Hands in all scenarios and waits for the last.
 async fn stream(bus: &dyn Bus, spec: &ScenarioSpec, scenarios: u32, orchestrator: u32) -> Result<Made, Complaint> {
-    let standing = || async { calls::status(bus, u32::MAX).await.map(|reply| reply.done).ok() };
-    let before = standing().await.unwrap_or_default();
+    let count = || async { standing(bus).await.map(|reply| reply.done).ok() };
+    let before = count().await.unwrap_or_default();
     let cpu_before = machine::cpu_s(orchestrator);
     let begun = Instant::now();
     let handed_in = calls::submit(bus, "stream", Priority::Normal, named(spec, "stream", scenarios)?);
     let mut samples = Vec::new();
     let looked = async {
         loop {
-            if let Some(done) = standing().await {
+            if let Some(done) = count().await {
                 let done = done.saturating_sub(before);
                 samples.push(Sample {
                     at_s: begun.elapsed().as_secs_f64(),

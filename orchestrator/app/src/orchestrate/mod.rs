@@ -9,6 +9,7 @@
 //! Events stand in one line before the owner; nothing of a step is seen before its rows are durable.
 
 mod artifacts;
+mod metrics;
 mod owner;
 mod past;
 mod reader;
@@ -70,6 +71,8 @@ pub(crate) struct OrchestratorConfig {
     /// Whether a disk that takes nothing more is waited for, while workers keep their reports; otherwise serving ends with
     /// the reason, for whoever supervises it.
     pub(crate) waits: bool,
+    /// Where figures are served; none for nowhere.
+    pub(crate) metrics: Option<tokio::net::TcpListener>,
 }
 
 /// How long the orchestrator of a supervisor waits for the one of an earlier supervisor, which is leaving, to give up the store.
@@ -86,7 +89,7 @@ pub(crate) async fn serve(
     bus: Arc<dyn Bus>,
     mut shutdown: watch::Receiver<Stop>,
 ) -> anyhow::Result<()> {
-    let started = Instant::now();
+    let (started, began_ms) = (Instant::now(), socrates_link::wall_ms());
     let blobs = LocalBlobs::new(config.dir.join("blobs"), config.durability == Durability::Disk);
     let policy = Policy {
         lease_ms: config.lease_ms,
@@ -105,7 +108,7 @@ pub(crate) async fn serve(
         circuit_percent: config.circuit_percent,
         ..Policy::default().asking_again(config.asks_again)
     };
-    let (store, state) = loop {
+    let (store, mut state) = loop {
         let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
         let (policy, alone) = (policy.clone(), config.alone);
         let opened = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept, alone)).await;
@@ -116,12 +119,14 @@ pub(crate) async fn serve(
             opened => break opened?,
         }
     };
+    state.clock_ms = began_ms;
     let epoch = state.epoch;
     tracing::info!(epoch, scenarios = state.counts().0, "the orchestrator begins");
 
     let (line, inbound) = mpsc::channel::<Inbound>(LINE);
     let (committed, telling) = mpsc::channel(TELLING);
-    let (writer, mut broken) = writer::start(store, committed).context("starting the writer")?;
+    let commits = metrics::Commits::new();
+    let (writer, mut broken) = writer::start(store, committed, commits.clone()).context("starting the writer")?;
     let mut tasks = JoinSet::new();
     tasks.spawn(writer::tell(Arc::clone(&bus), epoch, telling));
     // Everything is declared before the token that says so.
@@ -141,10 +146,13 @@ pub(crate) async fn serve(
     let store_file = config.dir.join("jobs.sqlite");
     tasks.spawn(past::serve(Arc::clone(&bus), bus.serve(keys::PAST).await.context("serving the past")?, store_file));
     let presence = bus.watch_alive(keys::WORKERS_ALIVE).await.context("watching the workers")?;
+    if let Some(listener) = config.metrics {
+        tasks.spawn(metrics::serve(listener, line.clone()));
+    }
     tasks.spawn(reader::watch(presence, line));
     let token = bus.declare_alive(&keys::orchestrator_alive(bus.name())).await.context("showing the token")?;
 
-    let mut owner = Owner::new(state, started, writer);
+    let mut owner = Owner::new(state, started, writer, commits);
     let result = tokio::select! {
         biased;
         why = &mut broken => Err(why.map_or_else(|_gone| anyhow::anyhow!("the writer of the job store has ended"), anyhow::Error::from)),

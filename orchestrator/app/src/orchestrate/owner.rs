@@ -10,6 +10,7 @@ use socrates_model::wire::{Acquire, Acquired, NoWork};
 use socrates_orchestrator::{Answer, Effect, Event, Millis, Row, State, Token, status, step};
 use tokio::sync::mpsc;
 
+use super::metrics::{self, Commits};
 use super::reader::{Inbound, Question};
 use super::writer::{Commit, Reply, Said, Say};
 
@@ -43,7 +44,12 @@ fn pause_of_idle(effect: &mut Effect) -> Option<&mut Millis> {
     let Effect::Reply { answer, .. } = effect else { return None };
     match &mut **answer {
         Answer::Acquired(Acquired::None { retry_after_ms, reason: NoWork::Empty }) => Some(retry_after_ms),
-        Answer::Acquired(_) | Answer::Welcome(_) | Answer::Beat(_) | Answer::Recorded(_) | Answer::Submitted(_) => None,
+        Answer::Acquired(_)
+        | Answer::Welcome(_)
+        | Answer::Beat(_)
+        | Answer::Recorded(_)
+        | Answer::Submitted(_)
+        | Answer::Steered(_) => None,
     }
 }
 
@@ -64,12 +70,14 @@ pub(super) struct Owner {
     asks: BTreeMap<Token, Ask>,
     next: Token,
     waiting: VecDeque<Waiting>,
+    commits: Commits,
 }
 
 impl Owner {
-    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>) -> Self {
+    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>, commits: Commits) -> Self {
         let done_before = state.counts().1;
-        Self { state, started, done_before, writer, asks: BTreeMap::new(), next: 0, waiting: VecDeque::new() }
+        let (asks, waiting) = (BTreeMap::new(), VecDeque::new());
+        Self { state, started, done_before, writer, asks, next: 0, waiting, commits }
     }
 
     fn now(&self) -> Millis {
@@ -90,6 +98,10 @@ impl Owner {
                         // Nobody is left to hear the answer; a grant to it would only wait for its lease to end.
                         self.waiting.retain(|waiting| waiting.acquire.instance != instance);
                         self.event(Event::Gone { instance }).await;
+                    }
+                    // A collector that went away needs no answer.
+                    Some(Inbound::Counted(answer)) => {
+                        drop(answer.send(metrics::text(&self.state, self.now(), &self.commits)));
                     }
                     Some(Inbound::Full(why)) => return Some(why),
                     None => return None,
@@ -121,7 +133,7 @@ impl Owner {
                 reply.serving_ms = self.now();
                 reply.done_before = u32::try_from(self.done_before).unwrap_or(u32::MAX);
                 // Behind the rows it speaks of, as every answer.
-                let said = Said { replies: vec![Reply { ask, say: Say::Status(reply) }], ..Said::default() };
+                let said = Said { replies: vec![Reply { ask, say: Say::Status(Box::new(reply)) }], ..Said::default() };
                 return self.send(Commit { rows: Vec::new(), said }).await;
             }
             Question::Acquire(acquire) => return self.acquire(acquire, ask, None).await,

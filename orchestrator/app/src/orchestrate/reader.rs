@@ -6,7 +6,7 @@ use serde::de::DeserializeOwned;
 use socrates_kit::{BlobError, LocalBlobs};
 use socrates_link::{Ask, Bus, Presence, Serving, keys};
 use socrates_model::wire::{Acquire, Beat, Control, Hello, Recorded, Release, Report, StatusAsk, Submit, Submitted};
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, oneshot};
 
 use super::artifacts;
 
@@ -28,6 +28,8 @@ pub(super) enum Inbound {
     Asked(Question, Ask),
     /// A worker's token is gone.
     Gone(String),
+    /// The figures are wanted.
+    Counted(oneshot::Sender<String>),
     /// The disk takes nothing more, and nobody waits until it does.
     Full(BlobError),
 }

@@ -9,8 +9,8 @@ use socrates_kit::{LocalBlobs, Stop};
 use socrates_link::{Bus, MemoryBus, Overflow, call, decode, keys};
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatReply, Control, Grant, Hello, NoWork, Notice, Outcome, Priority, Recorded, Report,
-    ScenarioSpec, StatusAsk, StatusReply, Submit, Submitted, Welcome,
+    Acquire, Acquired, Beat, BeatReply, Chosen, Control, Grant, Hello, NoWork, Notice, Outcome, Part, Priority,
+    Recorded, Report, ScenarioSpec, StatusAsk, StatusReply, Steer, Steered, Submit, Submitted, Wait, Welcome,
 };
 use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 use tokio::sync::watch;
@@ -47,6 +47,7 @@ async fn open(dir: &Path) -> Site {
         code_version: "1".to_owned(),
         alone: false,
         waits: true,
+        metrics: None,
     };
     let mut alive = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.unwrap();
     let running = tokio::spawn(serve(config, Arc::clone(&bus), shutdown));
@@ -141,7 +142,7 @@ impl Site {
     }
 
     async fn status(&self) -> StatusReply {
-        self.ask(keys::STATUS, &StatusAsk { batch: String::new(), from: 0 }).await
+        self.ask(keys::STATUS, &StatusAsk::default()).await
     }
 }
 
@@ -237,6 +238,29 @@ async fn what_cannot_be_read_is_refused_with_a_reason() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn what_is_steered_is_answered_with_what_came_of_it_and_why_jobs_wait_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let site = open(dir.path()).await;
+    site.submit("a").await;
+    let pause = Control::Steer(Steer::Pause(Part::Stage(Stage::Proposal)));
+    let steered: Steered = site.ask(keys::CONTROL, &pause).await;
+    assert_eq!((steered.scenarios, steered.jobs, steered.left.len()), (1, 1, 0));
+    // Over a restart as well.
+    site.close().await;
+    let site = open(dir.path()).await;
+    let ask = StatusAsk { job: Some("a/proposal".parse().unwrap()), ..StatusAsk::default() };
+    let reply: StatusReply = site.ask(keys::STATUS, &ask).await;
+    let whys = reply.whys.unwrap();
+    assert!(whys[0].why.contains(&Wait::Paused(Part::Stage(Stage::Proposal))), "{whys:?}");
+    let cancel = Control::Steer(Steer::Cancel(Chosen::Scenarios(vec![ScenarioId::new("nobody").unwrap()])));
+    let steered: Steered = site.ask(keys::CONTROL, &cancel).await;
+    assert!(steered.scenarios == 0 && steered.left[0].unknown, "{steered:?}");
+    let list: StatusReply = site.ask(keys::STATUS, &StatusAsk::default()).await;
+    assert!(list.batches[0].since_ms > 1_600_000_000_000, "{:?}", list.batches);
+    site.close().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_second_orchestrator_on_the_folder_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let site = open(dir.path()).await;
@@ -257,6 +281,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         code_version: String::new(),
         alone: false,
         waits: true,
+        metrics: None,
     };
     let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
     let refused = tokio::time::timeout(LIMIT, serve(config, bus, shutdown)).await.expect("hangs");

@@ -4,6 +4,7 @@
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
+use std::time::Instant;
 
 use socrates_link::{Ask, Bus, Envelope, GRANTS_VERSION, LinkError, Qos, encode, keys};
 use socrates_model::job::Stage;
@@ -13,6 +14,7 @@ use socrates_store::{Store, StoreError};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinSet;
 
+use super::metrics::Commits;
 use super::reader::{kind, told};
 
 /// Steps in one transaction at most.
@@ -33,7 +35,7 @@ pub(super) enum Say {
     /// The state machine's word.
     Answer(Box<Answer>),
     /// How things stand.
-    Status(StatusReply),
+    Status(Box<StatusReply>),
 }
 
 /// What is said once the rows are durable.
@@ -96,11 +98,12 @@ impl Broken {
 pub(super) fn start(
     mut store: impl Store + 'static,
     committed: mpsc::Sender<Said>,
+    commits: Commits,
 ) -> std::io::Result<(mpsc::Sender<Commit>, Broken)> {
-    let (line, mut commits) = mpsc::channel::<Commit>(LINE);
+    let (line, mut steps) = mpsc::channel::<Commit>(LINE);
     let (ended, broken) = oneshot::channel();
     std::thread::Builder::new().name("job-store".to_owned()).spawn(move || {
-        let result = write(&mut store, &mut commits, &committed);
+        let result = write(&mut store, &mut steps, &committed, &commits);
         // The store is closed before anybody hears that it ended.
         drop(store);
         if ended.send(result).is_err() {
@@ -112,19 +115,24 @@ pub(super) fn start(
 
 fn write(
     store: &mut impl Store,
-    commits: &mut mpsc::Receiver<Commit>,
+    steps: &mut mpsc::Receiver<Commit>,
     committed: &mpsc::Sender<Said>,
+    commits: &Commits,
 ) -> Result<(), StoreError> {
-    while let Some(first) = commits.blocking_recv() {
+    while let Some(first) = steps.blocking_recv() {
         let mut rows = first.rows;
         let mut said = vec![first.said];
         while said.len() < GROUP
-            && let Ok(next) = commits.try_recv()
+            && let Ok(next) = steps.try_recv()
         {
             rows.extend(next.rows);
             said.push(next.said);
         }
+        let began = Instant::now();
         store.save(&rows)?;
+        if !rows.is_empty() {
+            commits.add(began.elapsed(), said.len());
+        }
         for said in said {
             if !said.is_empty() && committed.blocking_send(said).is_err() {
                 return Ok(());
@@ -182,6 +190,7 @@ async fn answer(bus: &dyn Bus, epoch: u64, reply: Reply) -> Result<(), LinkError
             Answer::Acquired(acquired) => grant(ask, Envelope::fresh(&kind, bus.name(), epoch, acquired)).await,
             Answer::Beat(beat) => grant(ask, Envelope::fresh(&kind, bus.name(), epoch, beat)).await,
             Answer::Recorded(recorded) => ask.answer(&kind, bus.name(), epoch, &recorded).await,
+            Answer::Steered(steered) => ask.answer(&kind, bus.name(), epoch, &steered).await,
             // A control is answered with how many scenarios it touched.
             Answer::Submitted(Submitted::Accepted { new }) if control => {
                 ask.answer(&kind, bus.name(), epoch, &new).await

@@ -10,6 +10,7 @@ use socrates_app::config::Config;
 use socrates_app::keep::Keep;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
+use socrates_app::steer::{self, Act, SteerOptions, Whom};
 use socrates_model::wire::Priority;
 
 use super::keys::{Keys, MakeKeys};
@@ -37,6 +38,14 @@ enum ClusterVerb {
     Submit(Submit),
     /// Write the bundles of a batch that are done, with page and tables; also while others are being made, and again.
     Collect(Collect),
+    /// Hand out no more jobs: of a stage, of a batch, or at all. What workers hold is finished.
+    Pause(Hold),
+    /// Hand them out again.
+    Resume(Hold),
+    /// Give up scenarios, or what a batch has not done yet.
+    Cancel(Cancel),
+    /// Try the dead and failed jobs of scenarios once more, with new budgets.
+    Requeue(Requeue),
     /// Make the keys with which machines know each other, and what each may do.
     Keys(MakeKeys),
 }
@@ -106,6 +115,58 @@ struct Collect {
     keep: Option<Keep>,
 }
 
+/// Arguments of `cluster pause` and `cluster resume`.
+#[derive(Debug, Args)]
+struct Hold {
+    /// Only this stage: proposal, paths, behaviors, simulation, scoring or review.
+    stage: Option<String>,
+    /// Only this batch.
+    #[arg(long, value_name = "NAME", conflicts_with = "stage")]
+    batch: Option<String>,
+    #[command(flatten)]
+    at: At,
+}
+
+impl Hold {
+    fn whom(&self) -> Whom {
+        Whom { stage: self.stage.clone(), batch: self.batch.clone(), ..Whom::default() }
+    }
+}
+
+/// Arguments of `cluster cancel`.
+#[derive(Debug, Args)]
+struct Cancel {
+    /// Scenarios.
+    scenarios: Vec<String>,
+    /// All of this batch that is not done.
+    #[arg(long, value_name = "NAME", conflicts_with = "scenarios")]
+    batch: Option<String>,
+    #[command(flatten)]
+    at: At,
+}
+
+/// Arguments of `cluster requeue`.
+#[derive(Debug, Args)]
+struct Requeue {
+    /// Scenarios.
+    scenarios: Vec<String>,
+    /// All of this batch.
+    #[arg(long, value_name = "NAME", conflicts_with = "scenarios")]
+    batch: Option<String>,
+    /// All of every batch that failed.
+    #[arg(long, conflicts_with_all = ["scenarios", "batch"])]
+    dead: bool,
+    #[command(flatten)]
+    at: At,
+}
+
+/// Has something done about jobs.
+async fn steered(talk: &Printer, config: &Config, at: &At, act: Act, whom: &Whom) -> Outcome {
+    let At { connect, namespace, keys } = at.clone();
+    let options = SteerOptions { connect, namespace };
+    steer::steer(talk, &keys.over(config)?, &options, act, whom).await
+}
+
 impl Cluster {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
         match &self.verb {
@@ -119,6 +180,17 @@ impl Cluster {
             }
             ClusterVerb::Worker(verb) => verb.act(config).await,
             ClusterVerb::Keys(verb) => verb.act(talk),
+            ClusterVerb::Pause(verb) => steered(talk, config, &verb.at, Act::Pause, &verb.whom()).await,
+            ClusterVerb::Resume(verb) => steered(talk, config, &verb.at, Act::Resume, &verb.whom()).await,
+            ClusterVerb::Cancel(Cancel { scenarios, batch, at }) => {
+                let whom = Whom { batch: batch.clone(), scenarios: scenarios.clone(), ..Whom::default() };
+                steered(talk, config, at, Act::Cancel, &whom).await
+            }
+            ClusterVerb::Requeue(Requeue { scenarios, batch, dead, at }) => {
+                let (batch, scenarios, dead) = (batch.clone(), scenarios.clone(), *dead);
+                let whom = Whom { batch, scenarios, dead, stage: None };
+                steered(talk, config, at, Act::Requeue, &whom).await
+            }
             ClusterVerb::Submit(Submit { requests, at, batch, priority, options }) => {
                 let At { connect, namespace, keys } = at.clone();
                 let config = &keys.over(config)?;
@@ -194,7 +266,7 @@ pub(crate) struct Up {
     #[arg(long)]
     listen: Option<String>,
     /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
-    /// returns any result. There is no password and no encryption.
+    /// returns any result. There is no password and no encryption. It also lets `--metrics` be read from other machines.
     #[arg(long)]
     insecure: bool,
     /// Endpoint of a router to use instead of listening.
@@ -206,6 +278,10 @@ pub(crate) struct Up {
     /// What a commit outlives: `disk` (a power cut) or `process` (any signal; for workers on this machine alone).
     #[arg(long, value_enum, default_value_t = Durable::Disk)]
     durable: Durable,
+    /// Serve figures for Prometheus on this address, such as 127.0.0.1:9464, at /metrics; one that other machines can reach needs
+    /// `--insecure`.
+    #[arg(long, value_name = "ADDR")]
+    metrics: Option<String>,
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(super) tied: bool,
@@ -218,13 +294,13 @@ pub(crate) struct Up {
 
 impl Up {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let Self { dir, listen, insecure, connect, namespace, durable, tied, alone, keys } = self.clone();
+        let Self { dir, listen, insecure, connect, namespace, durable, metrics, tied, alone, keys } = self.clone();
         let config = &keys.over(config)?;
         let durable = match durable {
             Durable::Disk => Durability::Disk,
             Durable::Process => Durability::Process,
         };
-        let options = OrchestratorOptions { dir, listen, insecure, connect, namespace, durable, tied, alone };
+        let options = OrchestratorOptions { dir, listen, insecure, connect, namespace, durable, metrics, tied, alone };
         done(process::orchestrator(talk, config, &options).await)
     }
 }

@@ -33,6 +33,9 @@ impl Watch {
 pub(crate) struct Status {
     /// Bundle or library folder, a folder of bundles, or a zenoh endpoint.
     what: String,
+    /// Only this batch of a cluster.
+    #[arg(long, value_name = "NAME")]
+    batch: Option<String>,
     /// List those of which no bundle could be made, with the reason.
     #[arg(long)]
     failed: bool,
@@ -51,6 +54,6 @@ impl Status {
             (false, true) => Listed::Failed,
             (false, false) => Listed::None,
         };
-        done(standing::status(talk, config, &self.what, listed).await)
+        done(standing::status(talk, config, &self.what, self.batch.as_deref(), listed).await)
     }
 }

@@ -20,6 +20,7 @@ mod scenarios;
 mod score;
 mod serve;
 mod simulate;
+mod top;
 mod video;
 mod view;
 
@@ -122,7 +123,10 @@ pub(crate) enum Verb {
     Status(look::Status),
     /// Check that a job store, its artifacts and its bundles are whole and agree, also while they are worked on.
     Fsck(fsck::Fsck),
-    /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; without one, list the codes.
+    /// Show stages, workers and the newest failures of an orchestrator, drawn anew every second.
+    Top(top::Top),
+    /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; or why a job waits. Without a word, list the
+    /// codes.
     Explain(explain::Explain),
     /// Check what this machine can do, and say what is missing.
     Doctor,
@@ -183,7 +187,8 @@ impl Verb {
             Self::Watch(verb) => verb.act(talk, config).await,
             Self::Status(verb) => verb.act(talk, config).await,
             Self::Fsck(verb) => verb.act(talk),
-            Self::Explain(verb) => verb.act(talk),
+            Self::Top(verb) => verb.act(talk, config).await,
+            Self::Explain(verb) => verb.act(talk, config).await,
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),
             Self::Bt(verb) => verb.act(talk),

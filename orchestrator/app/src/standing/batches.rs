@@ -1,0 +1,79 @@
+//! Batches and what is held back, a line each.
+
+use std::time::Duration;
+
+use socrates_model::wire::{BatchStatus, Part};
+
+use crate::progress::span;
+
+/// What is held back, in words.
+pub(crate) fn part_words(part: &Part) -> String {
+    match part {
+        Part::All => "everything".to_owned(),
+        Part::Batch(name) => format!("batch `{name}`"),
+        Part::Stage(stage) => format!("stage {stage}"),
+    }
+}
+
+/// What is held back, and the batches: a line each, where there is something to say. Ages are told at the wall time `now_ms`.
+pub(super) fn lines(paused: &[Part], batches: &[BatchStatus], left: u32, now_ms: u64) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !paused.is_empty() {
+        let parts: Vec<String> = paused.iter().map(part_words).collect();
+        lines.push(format!("paused     {} · `socrates cluster resume` lets it go on", parts.join(" · ")));
+    }
+    if left > 0 {
+        lines.push(format!("batches    {left} earlier ones are not listed"));
+    }
+    lines.extend(batches.iter().map(|batch| line(batch, now_ms)));
+    lines
+}
+
+fn line(batch: &BatchStatus, now_ms: u64) -> String {
+    let BatchStatus { name, total, done, failed, canceled, running, paused, since_ms, .. } = batch;
+    let open = total.saturating_sub(*done);
+    let mut words = format!("batch      {name:<28} {done} done · {open} open · {failed} failed");
+    for (count, word) in [(*canceled, "given up"), (*running, "running")] {
+        if count > 0 {
+            words.push_str(&format!(" · {count} {word}"));
+        }
+    }
+    if *paused {
+        words.push_str(" · paused");
+    }
+    if let Some(age_ms) = now_ms.checked_sub(*since_ms).filter(|_| *since_ms > 0) {
+        words.push_str(&format!(" · since {}", span(Duration::from_millis(age_ms).as_secs_f64())));
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn batches_have_a_line_each_and_what_is_paused_is_said() {
+        let batch = |name: &str, paused: bool, since_ms: u64| BatchStatus {
+            name: name.to_owned(),
+            total: 5,
+            done: 2,
+            failed: 1,
+            running: 1,
+            paused,
+            since_ms,
+            ..BatchStatus::default()
+        };
+        let batches = [batch("night", true, 0), batch("day", false, 1_000)];
+        let paused = [Part::Batch("night".to_owned()), Part::Stage(socrates_model::job::Stage::Paths)];
+        assert_eq!(
+            lines(&paused, &batches, 3, 61_000),
+            [
+                "paused     batch `night` · stage paths · `socrates cluster resume` lets it go on",
+                "batches    3 earlier ones are not listed",
+                "batch      night                        2 done · 3 open · 1 failed · 1 running · paused",
+                "batch      day                          2 done · 3 open · 1 failed · 1 running · since 1 min 0 s",
+            ]
+        );
+        assert!(lines(&[], &[], 0, 0).is_empty());
+    }
+}
