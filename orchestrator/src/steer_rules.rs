@@ -122,8 +122,9 @@ fn it_is_said_what_a_job_waits_for() {
     let parent = why(&world, "a1/paths");
     assert!(matches!(&parent[..], [Wait::Parent { key, state: JobState::Ready }] if key.stage == Stage::Proposal));
     let grant = world.grant("w", Stage::Proposal);
-    assert_eq!(why(&world, "a2/proposal"), [Wait::Line { before: 0, workers: 1, busy: 1 }]);
-    assert_eq!(why(&world, "c1/proposal"), [Wait::Line { before: 1, workers: 1, busy: 1 }]);
+    // Batches take turns: the first of the other one is before the second of this one.
+    assert_eq!(why(&world, "c1/proposal"), [Wait::Line { before: 0, workers: 1, busy: 1 }]);
+    assert_eq!(why(&world, "a2/proposal"), [Wait::Line { before: 1, workers: 1, busy: 1 }]);
     world.now += 3_000;
     let held = why(&world, "a1/proposal");
     let [Wait::Held { instance, attempt: 1, for_ms: 3_000, beat_ms: 3_000, deadline_ms: 117_000, .. }] = &held[..]

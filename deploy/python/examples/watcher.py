@@ -35,5 +35,5 @@ watching = [session.declare_subscriber(f"{live}/agents", frames), session.declar
 for reply in session.get(f"{live}/meta"):  # a run that goes on already
     told(reply.ok) if reply.ok else None
 over.wait(600)
-print(f"{len(ticks)} ticks seen live")
 session.close()
+print(f"{len(ticks)} ticks seen live")

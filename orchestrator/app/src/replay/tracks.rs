@@ -63,15 +63,18 @@ struct Read {
     table: Option<Table>,
 }
 
-/// Reads and scores what a path names: a file, or a bag of ROS 2. Nothing for a folder that is no bag.
+/// Reads and scores what a path names: a file, or a bag of ROS 2. Nothing for a bundle, and for a folder that is no bag.
 ///
 /// # Errors
 /// What cannot be read, with what would be.
 pub(crate) fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Complaint> {
     let name = path.display().to_string();
+    if bundle::is_bundle(path) {
+        return Ok(None);
+    }
     match bags::at(path)? {
         Some(bag) => score_bag(&name, bag, known).map(Some),
-        None if path.is_dir() || bundle::is_bundle(path) => Ok(None),
+        None if path.is_dir() => Ok(None),
         None => score(&name, &bags::bytes(path)?, known).map(Some),
     }
 }
