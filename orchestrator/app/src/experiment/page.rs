@@ -15,8 +15,8 @@ main{max-width:1380px;margin:0 auto;padding:24px 20px}h1{font-size:28px;line-hei
 h2{font-size:18px;margin:0 0 8px}h3{font-size:15px;margin:18px 0 6px}p{margin:4px 0 8px}\
 section{background:#fff;border:1px solid #dde1e6;border-radius:10px;padding:16px 18px;margin:14px 0}\
 .stamp{border-color:#b3400b;color:#b3400b;font-weight:600}.bad{color:#b3400b;font-weight:600}.good{color:#00795c;font-weight:600}\
-.quiet{color:#5b636e}.wide{overflow-x:auto}table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}\
-th,td{padding:3px 7px;text-align:right;border-bottom:1px solid #dde1e6;white-space:nowrap}\
+.quiet{color:#5b636e}.wide{overflow-x:auto}table{border-collapse:collapse;font-size:12px;font-variant-numeric:tabular-nums}\
+th,td{padding:3px 6px;text-align:right;border-bottom:1px solid #dde1e6;white-space:nowrap}\
 th{border-bottom-color:#5b636e;vertical-align:bottom}td.name,th.name{text-align:left}tr.first td{background:#f3f5f8}\
 td.about{text-align:left;white-space:normal}figure{margin:18px 0 26px}figure svg{width:100%;max-width:1080px;height:auto;display:block}\
 figcaption{font-size:13px;color:#5b636e;margin-top:4px}code{font-size:13px}li{margin:3px 0}";
@@ -275,9 +275,9 @@ fn tables(told: &Told<'_>) -> String {
         };
         out.push_str(&format!(
             "<h3>{}{}</h3><div class=\"wide\"><table><tr><th>rate</th><th>tries</th><th class=\"name\">policy</th><th>realised, %</th>\
-             <th>difference to first, points</th><th>p</th><th>first cut, %</th><th>questions<br>a scenario</th><th>attempts<br>a job</th>\
-             <th>tokens a<br>realised one</th><th>tokens for each<br>further one</th><th>median<br>time, s</th><th>mean time, s,<br>within the limit</th>\
-             <th>recovery, s<br>50 / 95 / 99 %</th><th>lost, doubled</th></tr>{rows}</table></div>\n",
+             <th>difference<br>to first, points</th><th>p</th><th>first<br>cut, %</th><th>questions<br>a scenario</th><th>attempts<br>a job</th>\
+             <th>tokens a<br>realised one</th><th>tokens for<br>a further one</th><th>median<br>time, s</th><th>mean<br>time, s</th>\
+             <th>recovery, s<br>50 / 95 / 99 %</th><th>lost,<br>doubled</th></tr>{rows}</table></div>\n",
             escape(&first.cell.workload.name),
             escape(&strike)
         ));
