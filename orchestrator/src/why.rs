@@ -65,9 +65,11 @@ fn why(state: &State, job: &Job, now: Millis, served: bool) -> Vec<Wait> {
         }
         JobState::Ready => {
             found.extend(pauses(state, job));
+            // What is held back stands in no line.
+            let held_back = !found.is_empty();
             if served {
                 found.extend(limits(state, job, now));
-                found.push(line(state, job, now));
+                found.extend((!held_back).then(|| line(state, job, now)));
             }
         }
         JobState::Delayed => {

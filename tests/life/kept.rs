@@ -113,6 +113,8 @@ fn a_library_without_bundles_is_five_files_in_one_go_as_in_shards() {
     assert_eq!(page.code, 0, "{}", page.err);
     same(&at.join("merged/library"));
     assert_eq!(socrates(at, "verify", &["library", "verify", "merged/library"]).code, 0);
+    let sound = socrates(at, "fsck", &["fsck", "merged/library"]);
+    assert_eq!(sound.code, 0, "{}{}", sound.out, sound.err);
     let none = socrates(at, "labels", &["labels", "page", "merged/library", "--out", "labels.html"]);
     assert!(none.code == 2 && none.err.contains("keeps no bundles"), "{}", none.err);
     // Half of the file is gone: nothing is told of a library that is not whole.
@@ -142,4 +144,38 @@ fn those_that_were_not_realised_are_kept_where_that_is_wanted() {
     assert!(one.code == 2 && one.err.contains("`--keep`") && one.err.contains("--variants"), "{}", one.err);
     let odd = socrates(at, "odd", &["run", "hall.toml", "--variants", "2", "--keep", "all"]);
     assert!(odd.code == 2 && odd.err.contains("folders, packed, failed, index"), "{}", odd.err);
+}
+
+#[test]
+fn a_scenario_that_could_not_be_made_leaves_what_makes_it_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("hall.toml"), WAREHOUSE).unwrap();
+    let args = ["run", "hall.toml", "--variants", "2", "--repeats", "--inject", "gdisc=1", "--out", "library"];
+    let made = socrates(at, "made", &args);
+    assert_eq!(made.code, 3, "{}", made.err);
+    let dead = names(&at.join("library/failed"));
+    assert_eq!(dead.len(), 2, "{dead:?}");
+    for name in &dead {
+        let left = at.join("library/failed").join(name);
+        assert_eq!(names(&left), ["details", "request.toml", "why.txt"]);
+        let provenance: serde_json::Value = serde_json::from_str(&read(&left.join("details/provenance.json"))).unwrap();
+        assert!(provenance["jobs"].as_array().is_some_and(|jobs| !jobs.is_empty()), "{provenance}");
+        // The command makes the same scenario, which fails in the same way.
+        let why = read(&left.join("why.txt"));
+        let command = why.lines().find_map(|line| line.trim().strip_prefix("socrates run ")).unwrap();
+        assert!(why.contains("G-DISC"), "{why}");
+        let again: Vec<&str> = ["run"].into_iter().chain(command.split(' ')).chain(["--out", "again"]).collect();
+        let again = socrates(at, "again", &again);
+        assert!(again.code == 3 && again.err.contains("G-DISC"), "{command}: {}", again.err);
+        std::fs::remove_dir_all(at.join("again")).unwrap();
+    }
+    // Shards bring theirs along.
+    for shard in ["0/2", "1/2"] {
+        let out = format!("shards/{}", &shard[..1]);
+        let args = [&args[..7], &["--shard", shard, "--out", out.as_str()]].concat();
+        assert_eq!(socrates(at, "shard", &args).code, 3);
+    }
+    let merged = socrates(at, "merge", &["library", "merge", "shards", "--out", "merged"]);
+    assert_eq!(names(&at.join("merged/failed")), dead, "{}", merged.err);
 }

@@ -22,7 +22,7 @@ use crate::library_index::{self, Library};
 use crate::output::Printer;
 use crate::progress::Progress;
 use crate::words::plural;
-use crate::{batch, bundle, cores, place, work};
+use crate::{batch, bundle, cores, kept, place, work};
 
 /// What may be named.
 const HINT: &str = "name the folder of `cluster up --dir`, a library, the folder of a run, or its `.socrates`";
@@ -36,6 +36,8 @@ struct Found {
     bundles: Vec<PathBuf>,
     /// The list of the library.
     listed: Option<Library>,
+    /// Scenarios whose bundles the library does not keep, by the file that holds their reports.
+    kept: BTreeSet<String>,
 }
 
 /// A store with what was found of it.
@@ -139,7 +141,8 @@ fn found(folder: &Path) -> Result<Found, Complaint> {
     if work.is_none() && bundles.is_empty() && listed.is_none() {
         return Err(Complaint::input(format!("`{shown}` holds neither a job store nor a bundle"), HINT));
     }
-    Ok(Found { work, bundles, listed })
+    let kept = kept::names(root)?;
+    Ok(Found { work, bundles, listed, kept })
 }
 
 /// Audits the store of a work folder and looks for its artifacts.
@@ -230,8 +233,10 @@ fn shelf(talk: &Printer, found: &Found, stores: Option<&[&Stands]>) -> Vec<Check
     let mut checked = vec![files, once(&made)];
     checked.extend(stores.map(|stores| judged(&made, stores)));
     if let Some(list) = &found.listed {
-        checked.push(listed(&made, list));
-        checked.extend(stores.filter(|stores| list.count == count(stores.len())).map(|stores| written(&made, stores)));
+        checked.push(listed(&made, &found.kept, list));
+        checked.extend(
+            stores.filter(|stores| list.count == count(stores.len())).map(|stores| written(&made, &found.kept, stores)),
+        );
     }
     checked
 }
@@ -285,7 +290,7 @@ fn judged(made: &[(&Path, Manifest)], stores: &[&Stands]) -> Checked {
 }
 
 /// Whether the list and the bundles of a library say the same.
-fn listed(made: &[(&Path, Manifest)], list: &Library) -> Checked {
+fn listed(made: &[(&Path, Manifest)], kept: &BTreeSet<String>, list: &Library) -> Checked {
     let mut checked =
         about("library", "every scenario of the list is listed once, and its bundle is there with its verdict");
     let by_scenario: BTreeMap<&str, &Manifest> =
@@ -298,6 +303,8 @@ fn listed(made: &[(&Path, Manifest)], list: &Library) -> Checked {
             checked.wrong.push(format!("the list names scenario `{scenario}` twice"));
         }
         match by_scenario.get(scenario.as_str()) {
+            // What a library does not keep has its line elsewhere.
+            None if row.bundle.is_empty() && kept.contains(scenario.as_str()) => {}
             None if verdict != ScenarioEnd::Failed => {
                 checked
                     .wrong
@@ -323,9 +330,10 @@ fn listed(made: &[(&Path, Manifest)], list: &Library) -> Checked {
 }
 
 /// Whether every scenario that was judged has its bundle, in a library whose list is written.
-fn written(made: &[(&Path, Manifest)], stores: &[&Stands]) -> Checked {
+fn written(made: &[(&Path, Manifest)], kept: &BTreeSet<String>, stores: &[&Stands]) -> Checked {
     let mut checked = about("library-store", "every scenario that the store has judged has its bundle");
-    let there: BTreeSet<&str> = made.iter().map(|(_, manifest)| manifest.scenario.as_str()).collect();
+    let bundled = made.iter().map(|(_, manifest)| manifest.scenario.as_str());
+    let there: BTreeSet<&str> = bundled.chain(kept.iter().map(String::as_str)).collect();
     let judged = stores.iter().filter(|stands| stands.end.and_then(ScenarioEnd::verdict).is_some());
     for stands in judged {
         checked.looked_at += 1;

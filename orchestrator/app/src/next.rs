@@ -120,8 +120,16 @@ pub(crate) fn after_batch(root: &Path, library: &Library) -> String {
         return format!("socrates library merge {} --out library   # once every shard is made", shell(beside));
     }
     let failed = library.scenarios.iter().any(|row| row.verdict == ScenarioEnd::Failed);
-    let what = if failed { "status --failed" } else { "labels page" };
-    format!("socrates {what} {}", shell(root))
+    // What judges look at is played from bundles.
+    let kept = library.scenarios.iter().any(|row| !row.bundle.is_empty());
+    if library.scenarios.is_empty() {
+        return "the same command again, once scenarios are done".to_owned();
+    }
+    match (failed, kept) {
+        (true, _) => format!("socrates status --failed {}", shell(root)),
+        (false, true) => format!("socrates labels page {}", shell(root)),
+        (false, false) => format!("socrates library query {} --where verdict=realised", shell(root)),
+    }
 }
 
 #[cfg(test)]

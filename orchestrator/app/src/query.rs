@@ -140,12 +140,9 @@ pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Complaint> 
         talk.line(&line(&table.head));
         rows.iter().for_each(|row| talk.line(&line(row)));
     }
-    talk.warn(&format!(
-        "{} of {} in {}",
-        plural(rows.len(), "run"),
-        table.rows.len(),
-        plural(folders.len(), "scenario")
-    ));
+    // A library that keeps no bundles has no places to count.
+    let within = if folders.is_empty() { String::new() } else { format!(" in {}", plural(folders.len(), "scenario")) };
+    talk.warn(&format!("{} of {}{within}", plural(rows.len(), "run"), table.rows.len()));
     let object = |row: &&socrates_stream::csv::Row| -> Value {
         let cells = shown.iter().map(|at| (table.head.cell(*at), row.cell(*at)));
         cells

@@ -45,7 +45,8 @@ pub fn verify(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Complaint> {
             continue;
         }
         let found = of_library(folder)?;
-        if found.there.is_empty() && found.gone.is_empty() && found.lines == 0 {
+        let listed = folder.join(library_index::FILE).is_file();
+        if found.there.is_empty() && found.gone.is_empty() && found.lines == 0 && !listed {
             return Err(batch::none(folder));
         }
         there.extend(found.there);

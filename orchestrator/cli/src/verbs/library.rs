@@ -7,7 +7,7 @@ use socrates_app::labels::{Blind, CompareOptions, PageOptions};
 use socrates_app::merge::{self, MergeOptions};
 use socrates_app::output::Printer;
 use socrates_app::query::{self, Condition, QueryOptions};
-use socrates_app::{export_chat, labels, verify};
+use socrates_app::{export_chat, labels, report, verify};
 
 use super::{Outcome, done};
 
@@ -18,6 +18,9 @@ pub(crate) struct Library {
     #[command(subcommand)]
     verb: LibraryVerb,
 }
+
+/// Columns of `library list`.
+const LISTED: [&str; 7] = ["request", "planner", "seed", "verdict", "kind", "path", "reason"];
 
 /// What is done with a library.
 #[derive(Debug, Subcommand)]
@@ -39,6 +42,16 @@ enum LibraryVerb {
         /// Libraries, bundles, or folders that hold bundles.
         #[arg(required = true)]
         what: Vec<PathBuf>,
+    },
+    /// Print every run of a library in a line: request, planner, seed, verdict, whether it repeats another, where it lies, and why.
+    List {
+        /// Folder of the library.
+        library: PathBuf,
+    },
+    /// Write page and tables of a library anew; of more than 1000 scenarios several pages that lead to each other.
+    Gallery {
+        /// Folder of the library.
+        library: PathBuf,
     },
     /// Print the runs that fulfill conditions, as a table, or their folders.
     Query {
@@ -73,6 +86,11 @@ impl Library {
                 merge::merge(talk, &MergeOptions { shards: shards.clone(), out: out.clone(), moves: *moves })
             }
             LibraryVerb::Verify { what } => verify::verify(talk, what),
+            LibraryVerb::List { library } => {
+                let (library, columns) = (library.clone(), LISTED.map(str::to_owned).into());
+                query::query(talk, &QueryOptions { library, conditions: Vec::new(), columns, paths: false })
+            }
+            LibraryVerb::Gallery { library } => done(report::report(talk, library)),
             LibraryVerb::Query { library, conditions, columns, paths } => {
                 let (library, conditions) = (library.clone(), conditions.clone());
                 query::query(talk, &QueryOptions { library, conditions, columns: columns.clone(), paths: *paths })
