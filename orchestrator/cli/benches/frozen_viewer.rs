@@ -71,8 +71,9 @@ fn watched(folder: &Path, name: &str, frozen: bool) -> (f64, u64, String) {
     }
     let mut used = 0.0;
     let ended = poll(|| {
-        used = cpu_ms(pid).filter(|now| *now > 0.0).unwrap_or(used);
-        cpu_ms(pid).is_none_or(|now| now == 0.0).then_some(())
+        let now = cpu_ms(pid);
+        used = now.unwrap_or(used);
+        now.is_none().then_some(())
     });
     assert!(ended.is_some(), "the simulation did not end");
     let run = finish(run, folder, name).unwrap();
