@@ -151,8 +151,7 @@ impl Card {
     pub(crate) fn read(root: &Path, name: &str) -> Result<Self, Complaint> {
         let dir = root.join(name);
         // One recording at a time: a library is larger than the memory of a laptop.
-        let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
-        let reports = bundle::reports(&dir, &bundle.manifest)?;
+        let (bundle, reports) = bundle::read_with_reports(&dir, |index, _| index == 0)?;
         Self::of(&bundle, Arc::new(bundle.location.clone()), name, form(root, name), &reports)
     }
 }

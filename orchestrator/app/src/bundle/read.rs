@@ -41,44 +41,61 @@ pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
 
 /// The same with some of its runs only, chosen by their place in the manifest and what it says of them.
 pub(crate) fn read_some(dir: &Path, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Complaint> {
+    read_files(dir, &Files::at(dir)?, wanted)
+}
+
+/// The same with the reports of all its runs; an archive is unpacked once.
+pub(crate) fn read_with_reports(
+    dir: &Path,
+    wanted: impl Fn(usize, &RunEntry) -> bool,
+) -> Result<(Bundle, Vec<Report>), Complaint> {
     let files = Files::at(dir)?;
-    let manifest = finished(&files)?;
-    let request = request(&files)?;
-    let location: Location = part(&files, &LOCATION, &"")?;
+    let bundle = read_files(dir, &files, wanted)?;
+    let reports = reports_of(&files, &bundle.manifest)?;
+    Ok((bundle, reports))
+}
+
+fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Complaint> {
+    let manifest = finished(files)?;
+    let request = request(files)?;
+    let location: Location = part(files, &LOCATION, &"")?;
     let faults = socrates_model::fault::hard(&socrates_maps::check(&location));
     if !faults.is_empty() {
-        return Err(unusable(&files, LOCATION.path, &faults));
+        return Err(unusable(files, LOCATION.path, &faults));
     }
     let mut runs = Vec::new();
     for (_, entry) in manifest.runs.iter().enumerate().filter(|(index, entry)| wanted(*index, entry)) {
         let name = layout::RECORDINGS.of(&entry.run());
-        let recording = socrates_stream::mcap::read(&bytes(&files, &name)?)
+        let recording = socrates_stream::mcap::read(&bytes(files, &name)?)
             .map_err(|why| Complaint::input(format!("`{}`: {why}", files.shown(&name)), HINT))?;
-        runs.push((recording, report(&files, entry)?));
+        runs.push((recording, report(files, entry)?));
     }
     Ok(Bundle {
         dir: dir.to_path_buf(),
         manifest,
         request,
         location,
-        reading: part(&files, &layout::READING, &"")?,
-        proposal: part(&files, &layout::PROPOSAL, &"")?,
-        paths: part(&files, &layout::PATHS, &"")?,
-        behaviors: part(&files, &layout::BEHAVIORS, &"")?,
+        reading: part(files, &layout::READING, &"")?,
+        proposal: part(files, &layout::PROPOSAL, &"")?,
+        paths: part(files, &layout::PATHS, &"")?,
+        behaviors: part(files, &layout::BEHAVIORS, &"")?,
         runs,
     })
 }
 
 /// The reports of all runs of a bundle, without their recordings.
 pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
-    let files = Files::at(dir)?;
-    manifest.runs.iter().map(|entry| report(&files, entry)).collect()
+    reports_of(&Files::at(dir)?, manifest)
 }
 
 /// The same of the bundle at a path.
 pub(crate) fn reports_in(dir: &Path) -> Result<Vec<Report>, Complaint> {
     let files = Files::at(dir)?;
-    finished(&files)?.runs.iter().map(|entry| report(&files, entry)).collect()
+    reports_of(&files, &finished(&files)?)
+}
+
+fn reports_of(files: &Files, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
+    manifest.runs.iter().map(|entry| report(files, entry)).collect()
 }
 
 /// Files of a bundle that are not as they were written, in order of their names; the page may be written anew.

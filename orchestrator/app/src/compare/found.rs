@@ -26,8 +26,7 @@ pub(super) struct Scenario {
 
 impl Scenario {
     fn read(dir: &Path, name: String) -> Result<Self, Complaint> {
-        let bundle = bundle::read_some(dir, |_, _| false)?;
-        let reports = bundle::reports(dir, &bundle.manifest)?;
+        let (bundle, reports) = bundle::read_with_reports(dir, |_, _| false)?;
         Ok(Self {
             name,
             dir: dir.to_path_buf(),
