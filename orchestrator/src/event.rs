@@ -18,7 +18,7 @@ pub type Token = u64;
 pub enum Event {
     /// A worker introduces itself.
     Hello {
-        /// Who.
+        /// The worker.
         hello: Hello,
         /// Question.
         to: Token,

@@ -75,7 +75,7 @@ mod tests {
         let mut world = World::new();
         world.submit_as("a", Priority::Normal, specs('a', 40));
         assert_eq!(begun(&mut world, 4), "aaaa");
-        // Who comes later does not wait for all that came before, and takes no more than its share.
+        // A batch that comes later does not wait for all that came before, and takes no more than its share.
         world.submit_as("b", Priority::Normal, specs('b', 6));
         let order = begun(&mut world, 14);
         assert_eq!(order.matches('b').count(), 6, "{order}");

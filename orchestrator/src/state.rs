@@ -327,7 +327,7 @@ pub struct State {
     pub(crate) begun_turn: u64,
     /// Ready jobs by stage: by the turn of their scenario, then its place, then in order of their making.
     pub(crate) ready: BTreeMap<Stage, BTreeSet<(u64, u64, usize, JobKey)>>,
-    /// Who is due when.
+    /// Jobs by the time at which something happens to them.
     pub(crate) timers: BTreeSet<(Millis, JobKey)>,
     /// Results by idempotency key.
     pub(crate) cached: BTreeMap<Digest, JobKey>,

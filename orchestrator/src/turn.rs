@@ -291,7 +291,7 @@ impl<'a> Turn<'a> {
                     && self.state.in_flight.get(&idem_key) == Some(key)
                 {
                     self.state.in_flight.remove(&idem_key);
-                    // Whoever waited for this one may be handed out now.
+                    // Jobs that waited for this one may be handed out now.
                     if self.state.waiting.contains_key(&idem_key) {
                         self.hints.insert(key.stage);
                     }

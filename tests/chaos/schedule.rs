@@ -82,7 +82,7 @@ pub(super) struct Fault {
     pub(super) jump_s: i64,
 }
 
-/// So many faults over a batch of about so many attempts: each kind once, then by weight, in an order of their own.
+/// This number of faults over a batch of about this number of attempts: each kind once, then by weight, in an order of their own.
 pub(super) fn draw(seed: u64, count: usize, attempts: u64, kinds: &[(Kind, u64)]) -> Vec<Fault> {
     let throw = |what: &str, number: usize, sides: u64| derive_seed(seed, &[what, &number.to_string()]) % sides.max(1);
     let weights: u64 = kinds.iter().map(|(_, weight)| weight).sum();

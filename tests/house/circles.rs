@@ -24,7 +24,7 @@ const ROOMS: &[&str] = &[
 /// What the root file is called where it stands beside its modules.
 const ROOT: &str = "the root";
 
-/// Who names whom, and where: `file: path`.
+/// Arrows between modules, and where each stands: `file: path`.
 type Arrows = BTreeMap<String, BTreeMap<String, String>>;
 
 /// A path from the root of a room on; none where it leaves the room or stays within the module that names it.

@@ -62,7 +62,7 @@ pub struct Kind {
     location: String,
     parts: Vec<Part>,
     script: Vec<String>,
-    /// Whom the robot meets, one after the other.
+    /// The people that the robot meets, one after the other.
     order: Vec<(Relation, String)>,
 }
 
@@ -113,7 +113,7 @@ impl Likeness {
         let ends = [paths.robot.first(), paths.robot.last()];
         let mut places: Vec<Point> = ends.into_iter().flatten().filter_map(at).collect();
         let mut order: Vec<(Relation, String)> = Vec::new();
-        // Who is met at one node is met at one time.
+        // People who are met at one node are met at one time.
         for here in paths.encounters.chunk_by(|a, b| a.node == b.node) {
             let mut met: Vec<(Relation, String)> = here
                 .iter()
@@ -209,7 +209,7 @@ fn side(human: HumanId, paths: &Paths, location: &Location) -> Side {
     let Some(Visit { robot_step, human_step, .. }) = visits.first() else { return Side::Along };
     let own = paths.of(AgentId::Human(human)).unwrap_or_default();
     let Some((robot, person)) = leg(&paths.robot, *robot_step).zip(leg(own, *human_step)) else { return Side::Along };
-    // Whoever walks to the left of the robot's direction comes from its right.
+    // A person that walks to the left of the robot's direction comes from its right.
     match robot.perp(&person) {
         sine if sine > ASIDE => Side::Right,
         sine if sine < -ASIDE => Side::Left,

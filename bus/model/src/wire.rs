@@ -66,7 +66,7 @@ pub enum Welcome {
 pub struct Acquire {
     /// Repeated unchanged until an answer comes: the same id gets the same grants.
     pub req_id: String,
-    /// Who asks.
+    /// The worker that asks.
     pub instance: String,
     /// Stages it serves.
     pub stages: Vec<Stage>,
@@ -144,7 +144,7 @@ pub struct Held {
 /// A worker says that it lives and what it holds.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Beat {
-    /// Who.
+    /// The worker.
     pub instance: String,
     /// Attempts it holds.
     pub held: Vec<Held>,
@@ -222,7 +222,7 @@ pub struct Rates {
 /// A worker reports an attempt. Repeated until it is recorded.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
-    /// Who.
+    /// The worker.
     pub instance: String,
     /// Job.
     pub key: JobKey,
@@ -261,7 +261,7 @@ pub struct Report {
 /// A worker hands an attempt back unharmed; its budget is not touched.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Release {
-    /// Who.
+    /// The worker.
     pub instance: String,
     /// Job.
     pub key: JobKey,

@@ -15,7 +15,7 @@ use crate::output::{Format, Printer};
 const METRICS: &str = "metrics";
 /// The word for the glossary.
 const WORDS: &str = "words";
-/// So many words are proposed for one that is not known.
+/// Words that are proposed for one that is not known, at most.
 const NEAR: usize = 5;
 
 /// Prints the list of metrics: for each its unit, whether it is known while a run goes on, and what it is.

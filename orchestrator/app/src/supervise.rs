@@ -110,7 +110,7 @@ fn roles(
         let at = ["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned);
         Member::new(config, name, [own, &at].concat(), first)
     };
-    // Whoever knows of a commit runs on this machine.
+    // Every process that knows of a commit runs on this machine.
     let words = ["orchestrator", "--dir", &text(work.to_path_buf()), "--durable", "process"].map(str::to_owned);
     // The workers of an earlier supervisor left with it; those of this one outlive an orchestrator.
     let mut roles = vec![role("orchestrator", &words, vec!["--alone".to_owned()])?];

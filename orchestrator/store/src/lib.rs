@@ -47,7 +47,7 @@ pub enum StoreError {
     Locked {
         /// Its file.
         path: PathBuf,
-        /// Who has it: `process 4711`.
+        /// The process that has it: `process 4711`.
         holder: String,
     },
     /// The folder or file cannot be made or written.

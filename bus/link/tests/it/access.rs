@@ -1,4 +1,4 @@
-//! Who may do what on a router with keys. What is refused is dropped without a word, so each fact is read at the other end.
+//! What each role may do on a router with keys. What is refused is dropped without a word, so each fact is read at the other end.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;

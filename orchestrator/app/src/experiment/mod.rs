@@ -46,7 +46,7 @@ pub struct ExperimentOptions {
     pub spec: PathBuf,
     /// Folder for the tables, the plots, the page and the specification with every value.
     pub out: PathBuf,
-    /// So many scenarios of each cell, instead of those of the specification.
+    /// Number of scenarios of each cell, instead of those of the specification.
     pub scenarios: Option<u32>,
 }
 

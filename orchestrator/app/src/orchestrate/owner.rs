@@ -16,7 +16,7 @@ use super::writer::{Commit, Reply, Said, Say};
 
 /// How long an acquire without work waits for some, ms. Well below the workers' query limit of 2 s.
 const HOLD_MS: Millis = 1_000;
-/// Who has waited in vain asks again after, ms: at once, so that somebody always waits where work appears.
+/// Pause after which a worker that has waited in vain asks again, ms: at once, so that somebody always waits where work appears.
 const AGAIN_MS: Millis = 1;
 /// Acquires held at one time at most; more are answered at once.
 const HELD: usize = 4096;

@@ -49,7 +49,7 @@ pub(crate) struct Scored {
 /// What a table has.
 const TABLES: &str = "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, meters and radians; --robot ID says who is the robot where no id is `robot`";
 
-/// So many ids are told with their new names.
+/// Ids that are told with their new names, at most.
 const RENAMED: usize = 6;
 
 /// A file as it was read.
@@ -168,7 +168,7 @@ fn judged(name: &str, read: Read, known: &Known, mut told: Vec<String>) -> Resul
     Ok(Scored { recording, report, goal, told, table })
 }
 
-/// Whom the file calls otherwise than the figures do.
+/// Agents that the file calls otherwise than the figures do.
 fn renamed(named: &Named) -> Option<String> {
     let all = || named.names.iter().map(|(agent, id)| format!("`{id}` is {agent}"));
     let more = named.names.len().saturating_sub(RENAMED);
@@ -189,7 +189,7 @@ fn members(groups: &[Group], recording: &Recording, named: &Named, told: &mut Ve
                 None => told.push(format!("--groups names `{id}`, who is not in the recording")),
             }
         }
-        // Whoever is left alone is no group.
+        // A person that is left alone is no group.
         if group.len() > 1 {
             found.push(group);
         }

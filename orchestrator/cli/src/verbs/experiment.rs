@@ -17,7 +17,7 @@ pub(crate) struct Experiment {
     /// Folder for the tables, the plots, the page and the specification with every value.
     #[arg(long, default_value = "experiment")]
     out: PathBuf,
-    /// So many scenarios of each cell, instead of those of the specification.
+    /// Number of scenarios of each cell, instead of those of the specification.
     #[arg(long)]
     scenarios: Option<u32>,
 }
