@@ -224,8 +224,9 @@ impl Turn<'_> {
             && let Some(scenario) = self.scenario_mut(&key.scenario)
         {
             scenario.started = true;
-            let turn = scenario.turn;
+            let (turn, order) = (scenario.turn, scenario.order);
             let counted = !scenario.spec.review;
+            self.waits_no_more(order);
             self.state.begun_turn = self.state.begun_turn.max(turn);
             self.state.under_way += usize::from(counted);
         }

@@ -1,4 +1,4 @@
-//! What the authoring of one scenario may cost, in tokens, money and time of authors. Who asks for more ends with what there is.
+//! What the authoring of one scenario may cost, in tokens, money and time of authors. A scenario that needs more ends with what there is.
 
 use std::collections::BTreeMap;
 
@@ -7,12 +7,16 @@ use socrates_model::job::{Item, JobKey, Stage};
 use socrates_model::{AuthorSpec, ScenarioId, Where, job};
 
 use crate::pipeline;
-use crate::state::JobState;
+use crate::state::{JobState, State};
 use crate::turn::Turn;
 
 impl Turn<'_> {
     /// Why the author of this scenario is asked no more, where its budget is spent.
     pub(crate) fn spent(&self, id: &ScenarioId) -> Option<Fault> {
+        let batch = self.scenario(id).and_then(|scenario| self.state.batches.get(&scenario.batch));
+        if let Some(batch) = batch.filter(|batch| !batch.over.is_empty()) {
+            return Some(Fault::new(FaultCode::JBudget, Where::key(id), batch.over.clone()));
+        }
         let policy = &self.state.policy;
         let (tokens_limit, ms_limit, money_limit) =
             (policy.tokens_per_scenario, policy.author_ms_per_scenario, policy.money_per_scenario);
@@ -27,11 +31,7 @@ impl Turn<'_> {
             (input.saturating_add(asked), output.saturating_add(answered), ms.saturating_add(attempt.wall_ms))
         });
         let tokens = input.saturating_add(output);
-        let author = self.scenario(id).and_then(|scenario| scenario.spec.settings.get("author"));
-        let server = author.and_then(|author| AuthorSpec::server_in(author));
-        let price = server.and_then(|server| price_of(&policy.prices, server)).copied().unwrap_or_default();
-        let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
-        let money = u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX);
+        let money = self.state.money(id, (input, output));
         let over = |spent: u64, limit: u64| limit > 0 && spent >= limit;
         let message = if over(tokens, tokens_limit) {
             format!(
@@ -58,6 +58,17 @@ impl Turn<'_> {
         }
         self.move_to(key, JobState::Failed, reason);
         true
+    }
+}
+
+impl State {
+    /// What tokens in and out cost the author of a scenario, in millionths.
+    pub(crate) fn money(&self, id: &ScenarioId, (input, output): (u64, u64)) -> u64 {
+        let author = self.scenarios.get(id).and_then(|scenario| scenario.spec.settings.get("author"));
+        let server = author.and_then(|author| AuthorSpec::server_in(author));
+        let price = server.and_then(|server| price_of(&self.policy.prices, server)).copied().unwrap_or_default();
+        let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
+        u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX)
     }
 }
 

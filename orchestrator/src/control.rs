@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::ScenarioId;
 use socrates_model::job::{JobKey, Stage};
+use socrates_model::standing::ScenarioEnd;
 use socrates_model::wire::{Chosen, Control, Left, Part, Steer, Steered, Submitted};
 
 use crate::event::{Answer, Row, Token};
@@ -93,7 +94,7 @@ impl Turn<'_> {
         let steered = self.steer(&steer);
         let answer = match steered.left.into_iter().next().filter(|_| refused) {
             Some(left) => Submitted::Refused { why: format!("scenario `{}` {}", left.some.concat(), left.why) },
-            None => Submitted::Accepted { new: steered.scenarios },
+            None => Submitted::Accepted { new: steered.scenarios, held: 0 },
         };
         self.reply(to, Answer::Submitted(answer));
     }
@@ -102,7 +103,19 @@ impl Turn<'_> {
         match steer {
             Steer::Pause(part) => self.pause(part, true),
             Steer::Resume(part) => self.pause(part, false),
-            Steer::Cancel(chosen) => self.each(chosen, Self::cancel),
+            Steer::Cancel(chosen) => {
+                let mut steered = self.each(chosen, Self::cancel);
+                let batches: Vec<String> = match chosen {
+                    Chosen::All => self.state.batches.keys().cloned().collect(),
+                    Chosen::Batch(batch) => vec![batch.clone()],
+                    Chosen::Scenarios(_) => Vec::new(),
+                };
+                for batch in batches {
+                    let left = self.leave_out(&batch, ScenarioEnd::Canceled);
+                    steered.scenarios = steered.scenarios.saturating_add(left);
+                }
+                steered
+            }
             Steer::Requeue(chosen) => self.each(chosen, Self::requeue),
         }
     }
@@ -123,7 +136,7 @@ impl Turn<'_> {
     }
 
     fn knows(&self, batch: &str) -> bool {
-        self.state.scenarios.values().any(|scenario| scenario.batch == batch)
+        self.state.batches.contains_key(batch)
     }
 
     fn no_batch(&self, batch: &str) -> Steered {
@@ -239,8 +252,16 @@ impl Turn<'_> {
         Steered { left: leaves.told(), ..steered }
     }
 
+    /// Why nothing can be done about a scenario that is not there.
+    fn unknown(&self, id: &ScenarioId) -> Why {
+        if self.state.queues.values().any(|queue| queue.named(id).is_some()) {
+            return "stands in a series and is not made yet; only its whole batch can be given up".to_owned().into();
+        }
+        Why::unknown(UNKNOWN)
+    }
+
     fn cancel(&mut self, id: &ScenarioId) -> Result<Touched, Why> {
-        let Some(scenario) = self.scenario(id) else { return Err(Why::unknown(UNKNOWN)) };
+        let Some(scenario) = self.scenario(id) else { return Err(self.unknown(id)) };
         if let Some(end) = scenario.end {
             return Err(format!("ended before: {end}").into());
         }
@@ -287,7 +308,7 @@ impl Turn<'_> {
 
     /// Dead and failed jobs of the newest revision once more, with new budgets.
     fn requeue(&mut self, id: &ScenarioId) -> Result<Touched, Why> {
-        let Some(scenario) = self.scenario(id) else { return Err(Why::unknown(UNKNOWN)) };
+        let Some(scenario) = self.scenario(id) else { return Err(self.unknown(id)) };
         if scenario.canceled {
             return Err("was given up; submit it under another name".into());
         }
@@ -324,6 +345,12 @@ impl Turn<'_> {
         scenario.reproposals = 0;
         if scenario.end.take().is_some() {
             let counted = scenario.started && !scenario.spec.review;
+            let (batch, order, waits) = (scenario.batch.clone(), scenario.order, !scenario.started);
+            self.batch_mut(&batch).anew();
+            self.opened(&batch, 1);
+            if waits {
+                self.waits_again(order);
+            }
             self.state.done = self.state.done.saturating_sub(1);
             self.state.under_way += usize::from(counted);
         }

@@ -8,6 +8,7 @@ use socrates_model::wire::{
 };
 use socrates_model::{Digest, ScenarioId};
 
+use crate::batches::{Batch, Queue};
 use crate::state::{Attempt, Job, JobResult, Scenario, ScenarioEnd};
 
 /// Names the question that an answer belongs to; the shell hands it in and gets it back.
@@ -115,6 +116,10 @@ pub enum Row {
     Dead(JobKey, String),
     /// A job that lives again.
     Revived(JobKey),
+    /// A batch.
+    Batch(Box<Batch>),
+    /// A series of a batch.
+    Queue(Box<Queue>),
     /// The paused batches.
     Paused(Vec<String>),
     /// The paused stages.

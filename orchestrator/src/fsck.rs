@@ -8,7 +8,7 @@
 //! | I4 | counters equal the rows that they count |
 //! | I5 | a job is ready exactly when all it needs has results |
 //! | I6 | every acknowledged report is in the store |
-//! | I7 | a job that has not ended has a timer, or a parent that can still run |
+//! | I7 | a job that has not ended has a timer, or a parent that can still run; a batch with open scenarios has a timer |
 //! | I8 | scenarios done are those submitted without the failed, dead and canceled ones |
 //! | I9 | fences of one job only grow |
 //! | I10 | tokens spent are the sum over all attempts, late ones as well |
@@ -27,6 +27,7 @@ pub fn fsck(state: &State) -> Vec<String> {
     }
     check_indices(state, &mut wrong);
     check_scenarios(state, &mut wrong);
+    check_batches(state, &mut wrong);
     wrong
 }
 
@@ -177,4 +178,43 @@ fn check_scenarios(state: &State, wrong: &mut Vec<String>) {
     }
     let known = |id: &socrates_model::ScenarioId| state.scenarios.contains_key(id);
     wrong.extend(state.jobs.keys().filter(|key| !known(&key.scenario)).map(|key| format!("{key}: no such scenario")));
+}
+
+fn check_batches(state: &State, wrong: &mut Vec<String>) {
+    for (name, batch) in &state.batches {
+        let own = |one: &&crate::state::Scenario| one.batch == *name && one.end.is_none();
+        let unmade = state.queues.values().filter(|queue| queue.batch == *name).map(|queue| u64::from(queue.unmade()));
+        let open =
+            u64::try_from(state.scenarios.values().filter(own).count()).unwrap_or(u64::MAX) + unmade.sum::<u64>();
+        if batch.open != open {
+            wrong.push(format!("I4 batch `{name}`: counter `{}`, open scenarios `{open}`", batch.open));
+        }
+        let timed = batch.due.is_some_and(|due| state.batch_timers.contains(&(due, name.clone())));
+        if timed != (open > 0) {
+            wrong.push(format!("I7 batch `{name}`: `{open}` scenarios open with timer `{:?}`", batch.due));
+        }
+    }
+    if state.batch_timers.len() != state.batches.values().filter(|batch| batch.due.is_some()).count() {
+        wrong.push("I4 batches: a timer belongs to none of them".to_owned());
+    }
+    for (place, queue) in &state.queues {
+        let own =
+            || state.by_order.range(*place..queue.end()).filter_map(|(at, id)| Some((at, state.scenarios.get(id)?)));
+        let made = own().count();
+        let waiting = own().filter(|(_, one)| !one.started && one.end.is_none()).count();
+        let counted = (usize::try_from(queue.made).ok(), usize::try_from(queue.waiting).ok());
+        if counted != (Some(made), Some(waiting)) {
+            wrong.push(format!("I4 series `{place}`: counters `{counted:?}`, made `{made}`, waiting `{waiting}`"));
+        }
+        for (at, scenario) in own() {
+            let index = u32::try_from(at - place).unwrap_or(u32::MAX);
+            if queue.series.scenario(index).as_ref() != Some(&scenario.spec) || scenario.batch != queue.batch {
+                wrong.push(format!("series `{place}`: scenario `{}` is not its number `{index}`", scenario.spec.id));
+            }
+        }
+        let idle = queue.waiting < crate::series::AHEAD && queue.unmade() > 0;
+        if idle && !state.drawing.contains(place) {
+            wrong.push(format!("series `{place}`: `{waiting}` wait, and nobody draws the next ones"));
+        }
+    }
 }

@@ -7,11 +7,11 @@ use socrates_model::fault::{FailureClass, FaultCode};
 use socrates_model::job::{JobKey, Look, Stage};
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::seeds::derive_seed;
-use socrates_model::wire::{Control, Grant, Outcome, Part, Report, Steer};
+use socrates_model::wire::{Control, Grant, Limits, Outcome, Part, Priority, Report, Seeds, Series, Steer, Submit};
 use socrates_model::{Role, ScenarioId};
 
 use crate::world::{World, fault, report, spec, success};
-use crate::{Attempt, Event, Job, JobResult, JobState, Policy, Row, Scenario, Snapshot, State};
+use crate::{Attempt, Batch, Event, Job, JobResult, JobState, Policy, Queue, Row, Scenario, Snapshot, State};
 
 /// Draws by hashing a counter: the same seed is the same history.
 pub(crate) struct Dice {
@@ -94,6 +94,15 @@ pub(crate) fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSp
         .collect()
 }
 
+/// A batch of its own, drawn from a series that is longer than what is made ahead, sometimes with little to spend.
+fn some_series(dice: &mut Dice) -> Submit {
+    let count = u32::try_from(dice.below(24)).unwrap() + 1;
+    let seeds = if dice.below(2) == 0 { Seeds::Next(count) } else { Seeds::Listed(vec![7; count as usize]) };
+    let limits = Limits { tokens: dice.pick(&[0, 0, 9, 40]), deadline_ms: dice.pick(&[0, 0, 600_000]), money: 0 };
+    let series = vec![Series { first: spec("line-08"), seeds }];
+    Submit { series, limits, ..Submit::new("line", Priority::Normal, Vec::new()) }
+}
+
 /// What a store would hold after these rows.
 pub(crate) fn replay(rows: &[Row]) -> Snapshot {
     let (snapshot, unfit) = kept(rows);
@@ -116,6 +125,8 @@ pub(crate) fn kept(rows: &[Row]) -> (Snapshot, Vec<Unfit>) {
     let mut jobs: BTreeMap<JobKey, Job> = BTreeMap::new();
     let mut attempts: BTreeMap<(JobKey, u32), Attempt> = BTreeMap::new();
     let mut results: BTreeMap<JobKey, JobResult> = BTreeMap::new();
+    let mut batches: BTreeMap<String, Batch> = BTreeMap::new();
+    let mut queues: BTreeMap<u64, Queue> = BTreeMap::new();
     let mut snapshot = Snapshot { epoch: 2, next_seq: 1, ..Snapshot::default() };
     let mut unfit = Vec::new();
     for row in rows.iter().cloned() {
@@ -128,6 +139,8 @@ pub(crate) fn kept(rows: &[Row]) -> (Snapshot, Vec<Unfit>) {
                     unfit.push(Unfit::Second(key));
                 }
             }
+            Row::Batch(batch) => drop(batches.insert(batch.name.clone(), *batch)),
+            Row::Queue(queue) => drop(queues.insert(queue.place, *queue)),
             Row::Paused(paused) => snapshot.paused = paused,
             Row::PausedStages(stages) => snapshot.paused_stages = stages,
             Row::Event(_, notice) => {
@@ -143,6 +156,8 @@ pub(crate) fn kept(rows: &[Row]) -> (Snapshot, Vec<Unfit>) {
     snapshot.jobs = jobs.into_values().collect();
     snapshot.attempts = attempts.into_iter().map(|((key, _), attempt)| (key, attempt)).collect();
     snapshot.results = results.into_iter().collect();
+    snapshot.batches = batches.into_values().collect();
+    snapshot.queues = queues.into_values().collect();
     (snapshot, unfit)
 }
 
@@ -156,7 +171,13 @@ fn essence(state: &State) -> Vec<String> {
         let Scenario { verdicts, settled, end, revision, started, open, .. } = scenario;
         format!("{verdicts:?} {settled:?} {end:?} {revision} {started} {open}")
     });
-    jobs.chain(scenarios).collect()
+    let batches = state.batches.values().map(|batch| {
+        // What passed since it was saved is lost.
+        let Batch { name, limits, over, spent, open, forgiven, .. } = batch;
+        format!("{name} {limits:?} {over} {spent:?} {open} {forgiven:?}")
+    });
+    let queues = state.queues.values().map(|queue| format!("{queue:?}"));
+    jobs.chain(scenarios).chain(batches).chain(queues).collect()
 }
 
 fn restart(world: &mut World, alone: bool) {
@@ -172,6 +193,8 @@ fn history(seed: u64, length: u64) -> World {
     let mut world = World::with(Policy { open_per_worker: 1, ..Policy::default() });
     let specs = scenarios(&mut dice);
     world.submit(specs.clone());
+    let series = some_series(&mut dice);
+    world.send(|to| Event::Submit { submit: series.clone(), to });
     let mut held: Vec<(String, Grant)> = Vec::new();
     let mut said: Vec<Report> = Vec::new();
     for _ in 0..length {
@@ -207,6 +230,7 @@ fn history(seed: u64, length: u64) -> World {
                 let (_, grant) = dice.pick(&held);
                 world.release(&grant);
             }
+            16 if dice.below(2) == 0 => drop(world.send(|to| Event::Submit { submit: series.clone(), to })),
             16 => drop(world.submit(specs.clone())),
             17 => match dice.below(12) {
                 0 => drop(world.control(Control::Cancel("b".to_owned()))),

@@ -12,6 +12,7 @@
 //!
 //! *Never here:* a runtime, the bus, a file, a clock, a random number, what an artifact contains.
 
+pub mod batches;
 pub mod bucket;
 pub mod circuit;
 pub mod event;
@@ -28,9 +29,11 @@ mod beat;
 mod budget;
 mod control;
 mod failure;
+mod limits;
 mod recover;
 mod report;
 mod revision;
+mod series;
 mod share;
 mod submit;
 mod timer;
@@ -40,6 +43,8 @@ pub mod overview;
 mod status;
 mod why;
 
+#[cfg(test)]
+mod batch_rules;
 #[cfg(test)]
 mod broken;
 #[cfg(test)]
@@ -57,6 +62,7 @@ mod steer_rules;
 #[cfg(test)]
 mod world;
 
+pub use batches::{Batch, Queue};
 pub use budget::price_of;
 pub use event::{Answer, Effect, Event, Row, Token};
 pub use fsck::fsck;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::job::Stage;
-use socrates_model::wire::{BatchStatus, Failed, Part, StageStatus, Table, WorkerStatus};
+use socrates_model::wire::{BatchStatus, Failed, Limits, Part, StageStatus, Table, WorkerStatus};
 
 use crate::pace::Pacer;
 use crate::state::{Job, Millis, ScenarioEnd, State, Worker};
@@ -39,10 +39,14 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
         let name = scenario.batch.as_str();
         let batch = found.entry(name).or_insert_with(|| {
             order.push(name);
+            let own = state.batches.get(name).cloned().unwrap_or_default();
             BatchStatus {
                 name: name.to_owned(),
                 paused: state.paused.contains(name) || state.paused.contains(""),
                 since_ms: scenario.since_ms,
+                limits: own.limits,
+                taken: if own.limits.are_none() { Limits::default() } else { own.taken() },
+                over: own.over,
                 pace: state.paces.get(name).map_or_else(|| Pacer::default().told(now), |pacer| pacer.told(now)),
                 ..BatchStatus::default()
             }
@@ -51,6 +55,17 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
         batch.done += u32::from(scenario.end.is_some());
         batch.failed += u32::from(scenario.end == Some(ScenarioEnd::Failed));
         batch.canceled += u32::from(scenario.end == Some(ScenarioEnd::Canceled));
+    }
+    for queue in state.queues.values() {
+        let Some(batch) = found.get_mut(queue.batch.as_str()) else { continue };
+        let (unmade, left) = (queue.unmade(), queue.left_out);
+        batch.unmade += unmade;
+        batch.total += unmade + left;
+        batch.done += left;
+        match queue.left_as {
+            ScenarioEnd::Canceled => batch.canceled += left,
+            ScenarioEnd::Failed | ScenarioEnd::Judged(_) => batch.failed += left,
+        }
     }
     for id in running(state) {
         let batch = state.scenarios.get(id).and_then(|scenario| found.get_mut(scenario.batch.as_str()));
@@ -62,7 +77,7 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
     let mut room = BATCH_BYTES;
     for name in order.iter().rev() {
         let Some(batch) = found.remove(name) else { continue };
-        let size = 160 + batch.name.len();
+        let size = 240 + batch.name.len() + batch.over.len();
         if size > room {
             break;
         }

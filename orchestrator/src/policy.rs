@@ -72,6 +72,8 @@ pub struct Policy {
     pub money_per_scenario: u64,
     /// Prices of a million tokens in and out by model, in millionths; an author without one costs nothing.
     pub prices: std::collections::BTreeMap<String, (u64, u64)>,
+    /// Time that a batch may run without limits of its own, ms; 0 sets no limit. Default 2 592 000 000: thirty days.
+    pub batch_deadline_ms: u64,
     /// Tokens that one author's server is asked for in a minute, in and out; 0 leaves it to what the server says. Default 0.
     pub tokens_per_minute: u64,
     /// Questions that one author's server is asked in a minute; 0 leaves it to what the server says. Default 0.
@@ -117,6 +119,7 @@ impl Default for Policy {
             author_ms_per_scenario: 0,
             money_per_scenario: 0,
             prices: std::collections::BTreeMap::new(),
+            batch_deadline_ms: 2_592_000_000,
             tokens_per_minute: 0,
             requests_per_minute: 0,
             circuit_percent: 0,

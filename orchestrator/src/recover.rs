@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::Hello;
 
+use crate::batches::{Batch, Queue};
 use crate::pace::Pacer;
 use crate::policy::Policy;
 use crate::state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, State, Worker};
@@ -25,6 +26,12 @@ pub struct Snapshot {
     pub attempts: Vec<(JobKey, Attempt)>,
     /// Results.
     pub results: Vec<(JobKey, JobResult)>,
+    /// Batches.
+    #[serde(default)]
+    pub batches: Vec<Batch>,
+    /// Series.
+    #[serde(default)]
+    pub queues: Vec<Queue>,
     /// Paused batches.
     pub paused: Vec<String>,
     /// Paused stages.
@@ -44,6 +51,14 @@ impl State {
         state.paused = snapshot.paused.into_iter().collect::<BTreeSet<String>>();
         state.paused_stages = snapshot.paused_stages.into_iter().collect();
         state.pace = Pacer::new(now);
+        for batch in snapshot.batches {
+            let batch = Batch { spent: (0, 0), open: 0, counted_to: now, due: None, ..batch };
+            state.batches.insert(batch.name.clone(), batch);
+        }
+        for queue in snapshot.queues {
+            state.next_order = state.next_order.max(queue.end());
+            state.queues.insert(queue.place, Queue { made: 0, waiting: 0, ..queue });
+        }
         for mut scenario in snapshot.scenarios {
             scenario.jobs.clear();
             scenario.open = 0;
@@ -51,9 +66,17 @@ impl State {
             state.next_order = state.next_order.max(scenario.order + 1);
             state.done += usize::from(scenario.end.is_some());
             state.under_way += usize::from(counted);
+            if let Some(queue) = state.queue_at(scenario.order) {
+                queue.made += 1;
+                queue.waiting += u32::from(!scenario.started && scenario.end.is_none());
+            }
+            state.batch(&scenario.batch, now).open += u64::from(scenario.end.is_none());
             state.by_order.insert(scenario.order, scenario.spec.id.clone());
             state.had_turn(&scenario.batch, scenario.turn, scenario.started);
             state.scenarios.insert(scenario.spec.id.clone(), scenario);
+        }
+        for (batch, unmade) in state.queues.values().map(|one| (one.batch.clone(), one.unmade())).collect::<Vec<_>>() {
+            state.batch(&batch, now).open += u64::from(unmade);
         }
         for job in snapshot.jobs {
             state.jobs.insert(job.key.clone(), job);
@@ -63,6 +86,7 @@ impl State {
             attempt.granted = now;
             attempt.ready = now;
             attempt.counted = attempt.end.is_some();
+            state.spent_by(&key, attempt.tokens, now);
             if let Some(job) = state.jobs.get_mut(&key) {
                 job.attempts.push(attempt);
             }
@@ -147,6 +171,7 @@ impl Turn<'_> {
             self.arm(&key, due);
         }
         self.moved.extend(self.state.scenarios.keys().cloned());
+        self.recover_batches();
     }
 
     /// Ends what workers held that are gone for certain: nobody waits for a lease that nobody can renew.

@@ -99,6 +99,7 @@ impl Turn<'_> {
             attempt.faults.clone_from(faults);
             attempt.artifacts.clone_from(&report.artifacts);
         }
+        self.spend(&report.key, report.tokens);
         if let Some(server) = self.job(&report.key).and_then(|job| server_of(&job.spec)).map(str::to_owned) {
             self.state.tally.asked(&server, report.tokens);
         }

@@ -13,7 +13,7 @@ use crate::{AttemptEnd, Effect, Event, JobState, Policy, Row, ScenarioEnd, statu
 
 fn begun() -> World {
     let mut world = World::new();
-    assert_eq!(world.submit(vec![spec("a")]), Submitted::Accepted { new: 1 });
+    assert_eq!(world.submit(vec![spec("a")]), Submitted::Accepted { new: 1, held: 0 });
     world
 }
 
@@ -58,7 +58,7 @@ fn the_same_question_gets_the_same_grants() {
 #[test]
 fn the_same_wish_twice_is_one_scenario_and_another_under_its_name_is_refused() {
     let mut world = begun();
-    assert_eq!(world.submit(vec![spec("a"), spec("b")]), Submitted::Accepted { new: 1 });
+    assert_eq!(world.submit(vec![spec("a"), spec("b")]), Submitted::Accepted { new: 1, held: 0 });
     let mut other = spec("a");
     other.seed = 8;
     assert!(matches!(world.submit(vec![spec("c"), other]), Submitted::Refused { .. }));
@@ -538,6 +538,6 @@ fn a_scenario_with_many_runs_takes_several_lines() {
 #[test]
 fn a_submission_beyond_the_limit_is_told_to_come_back() {
     let mut world = World::with(Policy { max_open_jobs: 10, ..Policy::default() });
-    assert_eq!(world.submit(vec![spec("a")]), Submitted::Accepted { new: 1 });
+    assert_eq!(world.submit(vec![spec("a")]), Submitted::Accepted { new: 1, held: 0 });
     assert!(matches!(world.submit(vec![spec("b")]), Submitted::Busy { .. }));
 }

@@ -10,6 +10,7 @@ pub use socrates_model::standing::{JobState, ScenarioEnd};
 use socrates_model::wire::{Hello, ScenarioSpec};
 use socrates_model::{Digest, Fault, Role, ScenarioId};
 
+use crate::batches::{Batch, Queue};
 use crate::bucket::Bucket;
 use crate::circuit::Circuit;
 use crate::pace::Pacer;
@@ -297,6 +298,10 @@ pub struct State {
     pub paused: BTreeSet<String>,
     /// Paused stages.
     pub paused_stages: BTreeSet<Stage>,
+    /// Batches by name.
+    pub batches: BTreeMap<String, Batch>,
+    /// Series by the place of their first scenario.
+    pub queues: BTreeMap<u64, Queue>,
     /// Versions of the last workers that were turned away, by stage.
     pub strangers: BTreeMap<Stage, String>,
     /// What is counted.
@@ -329,6 +334,10 @@ pub struct State {
     pub(crate) ready: BTreeMap<Stage, BTreeSet<(u64, u64, usize, JobKey)>>,
     /// Jobs by the time at which something happens to them.
     pub(crate) timers: BTreeSet<(Millis, JobKey)>,
+    /// Batches by the time at which their own time is looked at.
+    pub(crate) batch_timers: BTreeSet<(Millis, String)>,
+    /// Series of which more scenarios may have to be made, by the place of their first.
+    pub(crate) drawing: BTreeSet<u64>,
     /// Results by idempotency key.
     pub(crate) cached: BTreeMap<Digest, JobKey>,
     /// Keys that somebody works on.
@@ -359,6 +368,8 @@ impl State {
             clock_ms: 0,
             paused: BTreeSet::new(),
             paused_stages: BTreeSet::new(),
+            batches: BTreeMap::new(),
+            queues: BTreeMap::new(),
             strangers: BTreeMap::new(),
             tally: Tally::default(),
             pace: Pacer::default(),
@@ -374,6 +385,8 @@ impl State {
             begun_turn: 0,
             ready: BTreeMap::new(),
             timers: BTreeSet::new(),
+            batch_timers: BTreeSet::new(),
+            drawing: BTreeSet::new(),
             cached: BTreeMap::new(),
             in_flight: BTreeMap::new(),
             waiting: BTreeMap::new(),
@@ -387,19 +400,37 @@ impl State {
     /// When the next [`crate::Event::Tick`] is needed.
     #[must_use]
     pub fn next_due(&self) -> Option<Millis> {
-        self.timers.first().map(|(due, _)| *due)
+        if !self.drawing.is_empty() {
+            return Some(0);
+        }
+        let job = self.timers.first().map(|(due, _)| *due);
+        job.into_iter().chain(self.batch_timers.first().map(|(due, _)| *due)).min()
     }
 
-    /// Scenarios known and scenarios ended.
+    /// Scenarios asked for, those of series that are not made among them, and those that ended or are never made.
     #[must_use]
     pub fn counts(&self) -> (usize, usize) {
-        (self.scenarios.len(), self.done)
+        let (unmade, left_out) = self.unmade(|_| true);
+        (self.scenarios.len() + unmade + left_out, self.done + left_out)
+    }
+
+    /// How many scenarios of the chosen series are not made yet, and how many never will be.
+    pub(crate) fn unmade(&self, chosen: impl Fn(&Queue) -> bool) -> (usize, usize) {
+        let size = |count: u32| usize::try_from(count).unwrap_or(usize::MAX);
+        let own = self.queues.values().filter(|queue| chosen(queue));
+        own.fold((0, 0), |(unmade, left), queue| (unmade + size(queue.unmade()), left + size(queue.left_out)))
+    }
+
+    /// The series that stands at this place in the order of submission.
+    pub(crate) fn queue_at(&mut self, order: u64) -> Option<&mut Queue> {
+        self.queues.range_mut(..=order).next_back().map(|(_, queue)| queue).filter(|queue| order < queue.end())
     }
 
     /// Whether there are scenarios and all of them ended.
     #[must_use]
     pub fn is_done(&self) -> bool {
-        !self.scenarios.is_empty() && self.done == self.scenarios.len()
+        let (asked, done) = self.counts();
+        asked > 0 && asked == done
     }
 
     /// Wall time of a time on the shell's clock, ms since 1970; 0 where it is not known.

@@ -37,11 +37,18 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
     let (total, done) = if ask.batch.is_empty() {
         state.counts()
     } else {
-        chosen().fold((0, 0), |(total, done), scenario| (total + 1, done + usize::from(scenario.end.is_some())))
+        let (unmade, left) = state.unmade(|queue| queue.batch == ask.batch);
+        let made = (unmade + left, left);
+        chosen().fold(made, |(total, done), scenario| (total + 1, done + usize::from(scenario.end.is_some())))
     };
     let mut results: BTreeMap<ScenarioEnd, u32> = BTreeMap::new();
     for end in chosen().filter_map(|scenario| scenario.end) {
         *results.entry(end).or_default() += 1;
+    }
+    for queue in
+        state.queues.values().filter(|one| one.left_out > 0 && (ask.batch.is_empty() || one.batch == ask.batch))
+    {
+        *results.entry(queue.left_as).or_default() += queue.left_out;
     }
     let is_of = |id: &&ScenarioId| {
         ask.batch.is_empty() || state.scenarios.get(*id).is_some_and(|scenario| scenario.batch == ask.batch)

@@ -22,7 +22,7 @@ fn steer(world: &mut World, steer: Steer) -> Steered {
 fn two_batches() -> World {
     let mut world = World::new();
     world.submit(vec![spec("a1"), spec("a2")]);
-    let submit = Submit { batch: "c".to_owned(), priority: Priority::Normal, scenarios: vec![spec("c1")] };
+    let submit = Submit::new("c", Priority::Normal, vec![spec("c1")]);
     world.send(|to| Event::Submit { submit, to });
     world
 }
@@ -200,7 +200,7 @@ fn batches_are_listed_with_their_pace_and_an_idle_night_does_not_count() {
     let one = status(&world.state, &StatusAsk { batch: "c".to_owned(), ..StatusAsk::default() }, world.now);
     assert_eq!((one.total, one.done, one.scenarios.len(), one.running), (1, 0, 1, 0));
     // Since when a batch is there is known from the shell's clock.
-    let submit = Submit { batch: "d".to_owned(), priority: Priority::Normal, scenarios: vec![spec("d1")] };
+    let submit = Submit::new("d", Priority::Normal, vec![spec("d1")]);
     world.send(|to| Event::Submit { submit, to });
     let reply = status(&world.state, &StatusAsk::default(), world.now);
     assert_eq!(reply.batches[2].since_ms, 1_000_000 + world.now);
@@ -230,7 +230,7 @@ fn a_table_of_many_workers_and_a_list_of_many_batches_fit_a_message() {
     let mut world = World::new();
     for number in 0..300 {
         let batch = format!("batch-{number:03}-{}", "x".repeat(80));
-        let submit = Submit { batch, priority: Priority::Normal, scenarios: vec![spec(&format!("s{number:03}"))] };
+        let submit = Submit::new(batch, Priority::Normal, vec![spec(&format!("s{number:03}"))]);
         world.send(|to| Event::Submit { submit, to });
         let hello = Hello {
             instance: format!("{number:036}"),

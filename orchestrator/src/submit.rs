@@ -9,6 +9,7 @@ use socrates_model::{Role, Run, ScenarioId};
 
 use crate::event::{Answer, Token};
 use crate::pipeline;
+use crate::series::{AHEAD, Comes, meet};
 use crate::state::{Job, JobState, Scenario, Tries, Worker};
 use crate::turn::Turn;
 
@@ -56,7 +57,10 @@ impl Turn<'_> {
         let mut fresh: BTreeMap<ScenarioId, ScenarioSpec> = BTreeMap::new();
         let mut order = Vec::new();
         for spec in submit.scenarios {
+            let later = || self.state.queues.values().find_map(|one| Some((one.named(&spec.id)?, one.batch.as_str())));
+            let later = later();
             let known = self.scenario(&spec.id).map(|known| (&known.spec, known.batch.as_str()));
+            let known = known.or_else(|| later.as_ref().map(|(spec, batch)| (spec, *batch)));
             let known = known.or_else(|| fresh.get(&spec.id).map(|spec| (spec, submit.batch.as_str())));
             match known {
                 Some((known, batch)) if *known == spec && batch == submit.batch => {}
@@ -74,17 +78,45 @@ impl Turn<'_> {
                 }
             }
         }
+        let (mut series, mut held, mut ahead) = (Vec::new(), 0_u32, 0_usize);
+        for one in submit.series {
+            if let Err(why) = self.acceptable(&one.first) {
+                return Submitted::Refused { why };
+            }
+            held = held.saturating_add(one.count());
+            match self.comes(&submit.batch, &one, &fresh) {
+                Ok(Comes::Known) => {}
+                Ok(Comes::New) if series.iter().any(|other| meet(other, &one)) => {
+                    let why = format!("two series of a submission have names in common, from `{}` on", one.first.id);
+                    return Submitted::Refused { why };
+                }
+                Ok(Comes::New) => {
+                    ahead += usize::try_from(one.count().min(AHEAD)).unwrap_or(0);
+                    series.push(one);
+                }
+                Err(why) => return Submitted::Refused { why },
+            }
+        }
         // A chain has at most six jobs; runs beyond the first are made when the first is judged.
-        if !fresh.is_empty() && self.state.open_jobs + fresh.len() * 6 > self.state.policy.max_open_jobs {
+        let coming = fresh.len() + ahead;
+        if coming > 0 && self.state.open_jobs + coming * 6 > self.state.policy.max_open_jobs {
             return Submitted::Busy { retry_after_ms: 2_000 };
         }
-        let new = u32::try_from(order.len()).unwrap_or(u32::MAX);
+        let new = series
+            .iter()
+            .fold(u32::try_from(order.len()).unwrap_or(u32::MAX), |new, one| new.saturating_add(one.count()));
+        if new > 0 || !submit.limits.are_none() {
+            self.limit(&submit.batch, submit.limits);
+        }
+        for one in series {
+            self.join(&submit.batch, submit.priority, one);
+        }
         for id in order {
             if let Some(spec) = fresh.remove(&id) {
                 self.begin(&submit.batch, submit.priority, spec);
             }
         }
-        Submitted::Accepted { new }
+        Submitted::Accepted { new, held }
     }
 
     fn acceptable(&self, spec: &ScenarioSpec) -> Result<(), String> {
@@ -101,9 +133,15 @@ impl Turn<'_> {
     }
 
     fn begin(&mut self, batch: &str, priority: Priority, spec: ScenarioSpec) {
-        let id = spec.id.clone();
         let order = self.state.next_order;
         self.state.next_order += 1;
+        self.opened(batch, 1);
+        self.begin_at(order, batch, priority, spec);
+    }
+
+    /// Makes a scenario at its place in the order of submission, with the jobs of its first revision.
+    pub(crate) fn begin_at(&mut self, order: u64, batch: &str, priority: Priority, spec: ScenarioSpec) {
+        let id = spec.id.clone();
         let stages = pipeline::authored(&spec);
         let lead = pipeline::lead(&spec);
         let turn = self.state.take_turn(batch, priority);

@@ -22,6 +22,7 @@ impl Turn<'_> {
             }
             self.fire(&key);
         }
+        self.tick_batches();
         let silent = self.state.policy.lease_ms.saturating_mul(FORGET_LEASES);
         let now = self.now;
         self.state.workers.retain(|_, worker| !worker.held.is_empty() || now.saturating_sub(worker.seen) < silent);

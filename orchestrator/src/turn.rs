@@ -21,6 +21,13 @@ pub(crate) struct Turn<'a> {
     jobs: BTreeSet<JobKey>,
     attempts: BTreeSet<(JobKey, u32)>,
     scenarios: BTreeSet<ScenarioId>,
+    /// Batches and series that changed.
+    pub(crate) batches: BTreeSet<String>,
+    pub(crate) queues: BTreeSet<u64>,
+    /// Scenarios of series that this step made.
+    pub(crate) drawn: usize,
+    /// Batches that have taken what they may.
+    pub(crate) exhausted: BTreeSet<String>,
     /// Scenarios in which a job ended.
     pub(crate) moved: BTreeSet<ScenarioId>,
     replies: Vec<Effect>,
@@ -38,6 +45,10 @@ impl<'a> Turn<'a> {
             jobs: BTreeSet::new(),
             attempts: BTreeSet::new(),
             scenarios: BTreeSet::new(),
+            batches: BTreeSet::new(),
+            queues: BTreeSet::new(),
+            drawn: 0,
+            exhausted: BTreeSet::new(),
             moved: BTreeSet::new(),
             replies: Vec::new(),
             notices: Vec::new(),
@@ -48,9 +59,19 @@ impl<'a> Turn<'a> {
 
     /// The effects: rows first, then answers, notices, hints.
     pub(crate) fn finish(mut self) -> Vec<Effect> {
+        self.stop_exhausted();
         self.close_scenarios();
+        while self.draw() {
+            self.close_scenarios();
+        }
         self.count_attempts();
         let mut effects: Vec<Effect> = Vec::new();
+        for queue in self.queues.iter().filter_map(|place| self.state.queues.get(place)) {
+            effects.push(Effect::Save(Row::Queue(Box::new(queue.clone()))));
+        }
+        for batch in self.batches.iter().filter_map(|name| self.state.batches.get(name)) {
+            effects.push(Effect::Save(Row::Batch(Box::new(batch.clone()))));
+        }
         for id in &self.scenarios {
             if let Some(scenario) = self.state.scenarios.get(id) {
                 effects.push(Effect::Save(Row::Scenario(Box::new(scenario.clone()))));
@@ -389,7 +410,12 @@ impl<'a> Turn<'a> {
         }
         let Some(scenario) = self.scenario(id) else { return };
         let counted = scenario.started && !scenario.spec.review;
+        let (batch, order, waited) = (scenario.batch.clone(), scenario.order, !scenario.started);
         self.state.done += 1;
+        self.shut(&batch, 1);
+        if waited {
+            self.waits_no_more(order);
+        }
         if counted {
             self.state.under_way = self.state.under_way.saturating_sub(1);
             // A place is free for a scenario that was not begun.

@@ -88,7 +88,7 @@ impl World {
     }
 
     pub(crate) fn submit_as(&mut self, batch: &str, priority: Priority, scenarios: Vec<ScenarioSpec>) -> Submitted {
-        let submit = Submit { batch: batch.to_owned(), priority, scenarios };
+        let submit = Submit::new(batch, priority, scenarios);
         match self.send(|to| Event::Submit { submit, to }) {
             Some(Answer::Submitted(answer)) => answer,
             other => panic!("{other:?}"),

@@ -134,7 +134,7 @@ impl Bench {
             review: false,
             order: None,
         };
-        let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![spec] };
+        let submit = Submit::new("b", Priority::Normal, vec![spec]);
         bench.send(|to| Event::Submit { submit, to });
         bench
     }

@@ -5,6 +5,7 @@
 
 mod overview;
 mod steer;
+mod submit;
 mod why;
 
 use std::collections::BTreeMap;
@@ -15,13 +16,12 @@ use crate::fault::{FailureClass, Fault};
 use crate::hash::Digest;
 use crate::ids::ScenarioId;
 use crate::job::{Artifact, JobKey, JobSpec, Stage};
-use crate::planner_name::PlannerName;
 pub use crate::priority::Priority;
-use crate::role::Role;
 use crate::standing::{JobState, ScenarioEnd};
 
 pub use overview::{BatchStatus, Failed, Pace, StageStatus, Table, WorkerStatus};
 pub use steer::{Chosen, Left, Part, Steer, Steered};
+pub use submit::{Limits, ScenarioSpec, Seeds, Series, Submit, Submitted};
 pub use why::{JobAsk, JobWhy, Wait};
 
 /// A worker introduces itself.
@@ -283,70 +283,6 @@ pub enum Recorded {
     Late,
     /// The store cannot take it now; keep it and send it again.
     Busy,
-}
-
-/// One scenario to be made.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ScenarioSpec {
-    /// Name, also of its bundle.
-    pub id: ScenarioId,
-    /// Content address of the request (canonical JSON).
-    pub request: Digest,
-    /// Content address of the location.
-    pub location: Digest,
-    /// Content address of the reading.
-    pub reading: Digest,
-    /// Base seed.
-    pub seed: u64,
-    /// Planners, `reference` first.
-    pub planners: Vec<PlannerName>,
-    /// Simulation seeds.
-    pub run_seeds: Vec<u64>,
-    /// Pinned artifacts by role (`proposal`, `paths`, `behaviors`); their stages are not asked.
-    #[serde(default)]
-    pub pinned: BTreeMap<Role, Digest>,
-    /// Further settings handed to the jobs (`author`, `pace`, `live`, `profile`).
-    #[serde(default)]
-    pub settings: BTreeMap<String, String>,
-    /// Whether a person looks at the proposal before it goes on.
-    #[serde(default)]
-    pub review: bool,
-    /// Content address of what else its bundle is written from; none where whoever submits writes it themselves.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub order: Option<Digest>,
-}
-
-/// A client submits scenarios under one batch name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Submit {
-    /// Batch name; the same batch and scenario id again is taken as the same wish.
-    pub batch: String,
-    /// How urgent they are beside other batches.
-    #[serde(default, skip_serializing_if = "Priority::is_normal")]
-    pub priority: Priority,
-    /// Scenarios, at most as many as fit a message; call again for more.
-    pub scenarios: Vec<ScenarioSpec>,
-}
-
-/// Answer to [`Submit`].
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Submitted {
-    /// Durable.
-    Accepted {
-        /// How many were new.
-        new: u32,
-    },
-    /// Not now.
-    Busy {
-        /// Try again after, ms.
-        retry_after_ms: u64,
-    },
-    /// Never.
-    Refused {
-        /// Why.
-        why: String,
-    },
 }
 
 /// A client controls a batch.

@@ -38,11 +38,11 @@ pub(crate) async fn submit(
     let mut specs = specs.into_iter().peekable();
     while specs.peek().is_some() {
         let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
-        let wish = Submit { batch: batch.to_owned(), priority, scenarios };
+        let wish = Submit::new(batch, priority, scenarios);
         let started = Instant::now();
         loop {
             match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
-                Ok(Submitted::Accepted { new }) => {
+                Ok(Submitted::Accepted { new, held: _ }) => {
                     fresh = fresh.saturating_add(new.into());
                     break;
                 }

@@ -107,7 +107,7 @@ impl Batch<'_> {
                 order: None,
             });
         }
-        let submit = Submit { batch: "experiment".to_owned(), priority: Priority::Normal, scenarios };
+        let submit = Submit::new("experiment", Priority::Normal, scenarios);
         let said = self.head.takes(|to| Event::Submit { submit, to }, self.now, None);
         self.tell(said, None, 0);
         for place in 0..self.workers.len() {

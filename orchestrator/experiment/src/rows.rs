@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::ScenarioId;
 use socrates_model::job::{JobKey, Stage};
-use socrates_orchestrator::{Attempt, Job, JobResult, Row, Scenario, Snapshot};
+use socrates_orchestrator::{Attempt, Batch, Job, JobResult, Queue, Row, Scenario, Snapshot};
 
 /// The rows that were committed.
 #[derive(Debug, Default)]
@@ -13,6 +13,8 @@ pub(crate) struct Rows {
     jobs: BTreeMap<JobKey, Job>,
     attempts: BTreeMap<(JobKey, u32), Attempt>,
     results: BTreeMap<JobKey, JobResult>,
+    batches: BTreeMap<String, Batch>,
+    queues: BTreeMap<u64, Queue>,
     next_seq: u64,
     paused: Vec<String>,
     paused_stages: Vec<Stage>,
@@ -29,6 +31,8 @@ impl Rows {
             Row::Attempt(key, attempt) => drop(self.attempts.insert((key, attempt.number), *attempt)),
             Row::Result(key, result) => self.doubled += u64::from(self.results.insert(key, *result).is_some()),
             Row::Event(_, notice) => self.next_seq = notice.seq.saturating_add(1),
+            Row::Batch(batch) => drop(self.batches.insert(batch.name.clone(), *batch)),
+            Row::Queue(queue) => drop(self.queues.insert(queue.place, *queue)),
             Row::Paused(paused) => self.paused = paused,
             Row::PausedStages(paused) => self.paused_stages = paused,
             Row::Text(..) | Row::Dead(..) | Row::Revived(_) => {}
@@ -43,6 +47,8 @@ impl Rows {
             jobs: self.jobs.values().cloned().collect(),
             attempts: self.attempts.iter().map(|((key, _), attempt)| (key.clone(), attempt.clone())).collect(),
             results: self.results.iter().map(|(key, result)| (key.clone(), result.clone())).collect(),
+            batches: self.batches.values().cloned().collect(),
+            queues: self.queues.values().cloned().collect(),
             paused: self.paused.clone(),
             paused_stages: self.paused_stages.clone(),
             next_seq: self.next_seq,

@@ -111,7 +111,7 @@ impl Life {
     }
 
     fn submit(&mut self, death: Death) {
-        let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: self.specs.clone() };
+        let submit = Submit::new("b", Priority::Normal, self.specs.clone());
         if let Some(Answer::Submitted(Submitted::Accepted { .. })) =
             self.site.send(|to| Event::Submit { submit, to }, death)
         {

@@ -33,8 +33,9 @@ pub use sqlite::{Durability, SqliteStore};
 
 /// Layout number of the tables. A store with a larger one is refused; a smaller one is read and written on as this one.
 ///
+/// Since 3, batches have limits and series; a program of before would take the scenarios of a series that are not made for none.
 /// Since 2, the run of a job stands in its key alone. A program of before would take every run for the reference's.
-pub const SCHEMA_VERSION: u32 = 2;
+pub const SCHEMA_VERSION: u32 = 3;
 
 /// Entries of the outbox that are kept over a restart.
 pub const OUTBOX: u64 = 10_000;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::{Digest, ScenarioId};
-use socrates_orchestrator::{Attempt, Job, JobResult, Row, Scenario, Snapshot};
+use socrates_orchestrator::{Attempt, Batch, Job, JobResult, Queue, Row, Scenario, Snapshot};
 
 use crate::{Store, StoreError, check};
 
@@ -19,6 +19,8 @@ pub struct MemoryStore {
     results: BTreeMap<JobKey, JobResult>,
     texts: BTreeMap<Digest, String>,
     dead: BTreeMap<JobKey, String>,
+    batches: BTreeMap<String, Batch>,
+    queues: BTreeMap<u64, Queue>,
     paused: Vec<String>,
     paused_stages: Vec<Stage>,
 }
@@ -39,6 +41,8 @@ impl MemoryStore {
             jobs: self.jobs.values().cloned().collect(),
             attempts: self.attempts.iter().map(|((key, _), attempt)| (key.clone(), attempt.clone())).collect(),
             results: self.results.iter().map(|(key, result)| (key.clone(), result.clone())).collect(),
+            batches: self.batches.values().cloned().collect(),
+            queues: self.queues.values().cloned().collect(),
             paused: self.paused.clone(),
             paused_stages: self.paused_stages.clone(),
             next_seq: self.next_seq.max(1),
@@ -79,6 +83,12 @@ impl Store for MemoryStore {
                 }
                 Row::Revived(key) => {
                     self.dead.remove(&key);
+                }
+                Row::Batch(batch) => {
+                    self.batches.insert(batch.name.clone(), *batch);
+                }
+                Row::Queue(queue) => {
+                    self.queues.insert(queue.place, *queue);
                 }
                 Row::Paused(paused) => self.paused = paused,
                 Row::PausedStages(stages) => self.paused_stages = stages,

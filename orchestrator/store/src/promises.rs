@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use socrates_model::job::{Artifact, Stage};
-use socrates_model::wire::{Acquire, Acquired, Outcome, Priority, Report, ScenarioSpec, Submit};
+use socrates_model::wire::{
+    Acquire, Acquired, Outcome, Priority, Report, ScenarioSpec, Seeds, Series, Submit, Submitted,
+};
 use socrates_model::{Digest, ScenarioId, Verdict};
 use socrates_orchestrator::{Answer, Effect, Event, JobState, Policy, Row, Snapshot, State, step};
 
@@ -68,8 +70,19 @@ fn rows(effects: &[Effect]) -> Vec<Row> {
 }
 
 pub(crate) fn submit(state: &mut State, id: &str) -> Vec<Row> {
-    let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![scenario(id)] };
+    let submit = Submit::new("b", Priority::Normal, vec![scenario(id)]);
     rows(&step(state, Event::Submit { submit, to: 0 }, 0))
+}
+
+/// A series, the first of whose scenarios has this name.
+pub(crate) fn submit_series(state: &mut State, first: &str, seeds: Vec<u64>) -> Vec<Row> {
+    let first = ScenarioSpec { seed: seeds[0], ..scenario(first) };
+    let series = vec![Series { first, seeds: Seeds::Listed(seeds) }];
+    let submit = Submit { series, ..Submit::new("line", Priority::Bulk, Vec::new()) };
+    let effects = step(state, Event::Submit { submit, to: 0 }, 0);
+    let taken = |effect: &Effect| matches!(effect, Effect::Reply { answer, .. } if matches!(**answer, Answer::Submitted(Submitted::Accepted { .. })));
+    assert!(effects.iter().any(taken), "{effects:?}");
+    rows(&effects)
 }
 
 /// One acquire and one success; the rows of both.
@@ -121,6 +134,8 @@ fn what_was_saved_is_loaded(store: &mut dyn Store) {
     let mut state = State::new(Policy::default());
     store.save(&submit(&mut state, "a")).unwrap();
     store.save(&submit(&mut state, "b")).unwrap();
+    // More scenarios than are made ahead, all of the same work.
+    store.save(&submit_series(&mut state, "line-1", vec![7; 40])).unwrap();
     while !state.is_done() {
         store.save(&work(&mut state)).unwrap();
         assert_eq!(store.fsck().unwrap(), Vec::<String>::new());
@@ -136,7 +151,7 @@ fn what_was_saved_is_loaded(store: &mut dyn Store) {
         }
         assert!(again.next_fence >= state.next_fence && again.next_seq == state.next_seq);
     }
-    assert_eq!(state.jobs.values().filter(|job| job.state == JobState::Succeeded).count(), 22);
+    assert_eq!(state.jobs.values().filter(|job| job.state == JobState::Succeeded).count(), 462);
 }
 
 fn a_second_result_is_refused_and_nothing_of_it_stays(store: &mut dyn Store) {

@@ -79,6 +79,8 @@ impl Reader {
             jobs: bodies(connection, &self.path, "job", "order by job", &[])?,
             attempts: bodies(connection, &self.path, "attempt", "order by job, number", &[])?,
             results: bodies(connection, &self.path, "result", "order by job", &[])?,
+            batches: bodies(connection, &self.path, "batch", "order by name", &[])?,
+            queues: bodies(connection, &self.path, "series", "order by place", &[])?,
             paused: listed(connection, &self.path, PAUSED)?,
             paused_stages: listed(connection, &self.path, PAUSED_STAGES)?,
             ..Snapshot::default()
@@ -119,6 +121,10 @@ fn only_read(path: &Path) -> Result<Option<Connection>, StoreError> {
     connection.execute_batch("pragma busy_timeout = 2000;").map_err(failed)?;
     let sql = "select exists(select 1 from sqlite_schema where name = ?1)";
     let made: bool = connection.query_row(sql, [schema::LAST], |row| row.get(0)).map_err(failed)?;
+    let whole: bool = connection.query_row(schema::HAS_3, [], |row| row.get(0)).map_err(failed)?;
+    if made && !whole {
+        connection.execute_batch(schema::SINCE_3).map_err(failed)?;
+    }
     Ok(made.then_some(connection))
 }
 

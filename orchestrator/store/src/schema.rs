@@ -16,8 +16,20 @@ create table if not exists result(
   job text primary key, attempt integer not null, verdict text, body text not null) without rowid;
 create table if not exists text(digest text primary key, content text not null);
 create table if not exists event(seq integer primary key, batch text not null, body text not null);
+create table if not exists batch(name text primary key, body text not null) without rowid;
+create table if not exists series(
+  place integer primary key, batch text not null, count integer not null, left_out integer not null, body text not null);
 create table if not exists dead(job text primary key, reason text not null) without rowid;
 ";
+
+/// What stands for the tables that a store of layout 2 lacks, where it is only read.
+pub(crate) const SINCE_3: &str = "
+create temp table if not exists batch(name text, body text);
+create temp table if not exists series(place integer, batch text, count integer, left_out integer, body text);
+";
+
+/// Whether a store has the tables of layout 3.
+pub(crate) const HAS_3: &str = "select exists(select 1 from sqlite_schema where name = 'series')";
 
 /// The table that is made last: where it is, all are.
 pub(crate) const LAST: &str = "dead";

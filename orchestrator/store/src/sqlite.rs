@@ -137,6 +137,8 @@ impl SqliteStore {
             jobs: self.bodies("job", "job")?,
             attempts: self.bodies("attempt", "job, number")?,
             results: self.bodies("result", "job")?,
+            batches: self.bodies("batch", "name")?,
+            queues: self.bodies("series", "place")?,
             paused: listed(&self.connection, &self.path, PAUSED)?,
             paused_stages: listed(&self.connection, &self.path, PAUSED_STAGES)?,
             next_seq: u64::try_from(last).unwrap_or(0) + 1,
@@ -275,6 +277,14 @@ fn write(to: &Connection, row: &Row, failed: &Failed<'_>) -> Result<(), StoreErr
         }
         Row::Dead(key, reason) => run("insert or replace into dead values(?1, ?2)", params![key.to_string(), reason]),
         Row::Revived(key) => run("delete from dead where job = ?1", params![key.to_string()]),
+        Row::Batch(batch) => {
+            run("insert or replace into batch values(?1, ?2)", params![batch.name, body("batch", batch)?])
+        }
+        Row::Queue(queue) => {
+            let (place, body) = (i64::try_from(queue.place).unwrap_or(i64::MAX), body("series", queue)?);
+            let sql = "insert or replace into series values(?1, ?2, ?3, ?4, ?5)";
+            run(sql, params![place, queue.batch, queue.series.count(), queue.left_out, body])
+        }
         Row::Paused(paused) => {
             run("insert or replace into meta values(?1, ?2)", params![PAUSED, body("meta", paused)?])
         }

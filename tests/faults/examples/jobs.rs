@@ -34,10 +34,7 @@ impl Machine {
             review: false,
             order: None,
         };
-        machine.send(|to| Event::Submit {
-            submit: Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![spec] },
-            to,
-        });
+        machine.send(|to| Event::Submit { submit: Submit::new("b", Priority::Normal, vec![spec]), to });
         let ask = Acquire {
             req_id: "q".to_owned(),
             instance: "worker-1".to_owned(),

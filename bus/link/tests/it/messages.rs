@@ -184,8 +184,8 @@ fn of_clients() -> Vec<Kind> {
     let end = PastEnd { place: 4, scenario: scenario.clone(), batch: "b".to_owned(), end: Some(ScenarioEnd::Failed) };
     let rows = PastPart::Rows { digest: Digest::of(b"rows"), len: 4, bytes: b"rows".to_vec() };
     vec![
-        kind("submit", Submit { batch: "b".to_owned(), priority: Priority::Bulk, scenarios: vec![spec()] }),
-        kind("submit.answer", Submitted::Accepted { new: 1 }),
+        kind("submit", Submit::new("b", Priority::Bulk, vec![spec()])),
+        kind("submit.answer", Submitted::Accepted { new: 1, held: 0 }),
         kind("submit.refused", Submitted::Refused { why: "known".to_owned() }),
         kind("submit.busy", Submitted::Busy { retry_after_ms: 2_000 }),
         kind("control.pause", Control::Pause("b".to_owned())),

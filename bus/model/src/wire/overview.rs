@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::fault::{FailureClass, Fault};
 use crate::job::{JobKey, Stage};
 use crate::standing::JobState;
+use crate::wire::Limits;
 
 /// How fast scenarios ended, over the time in which workers held jobs of theirs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -47,6 +48,18 @@ pub struct BatchStatus {
     /// How fast it goes.
     #[serde(default)]
     pub pace: Pace,
+    /// Scenarios of series that are not made yet; they are among the total.
+    #[serde(default)]
+    pub unmade: u32,
+    /// What it may take.
+    #[serde(default, skip_serializing_if = "Limits::are_none")]
+    pub limits: Limits,
+    /// What it has taken of that: time in which it was not done, tokens and money, in the units of the limits.
+    #[serde(default, skip_serializing_if = "Limits::are_none")]
+    pub taken: Limits,
+    /// Why nothing more of it is begun; empty where it goes on.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub over: String,
 }
 
 /// How stages and workers stand, for a table.

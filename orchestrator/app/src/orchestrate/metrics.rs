@@ -385,8 +385,7 @@ mod tests {
             review: false,
             order: None,
         };
-        let submit =
-            Submit { batch: "b".to_owned(), priority: socrates_model::wire::Priority::Normal, scenarios: vec![spec] };
+        let submit = Submit::new("b", socrates_model::wire::Priority::Normal, vec![spec]);
         step(&mut state, Event::Submit { submit, to: 0 }, 0);
         let ask = Acquire {
             req_id: "q".to_owned(),

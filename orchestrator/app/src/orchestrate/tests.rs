@@ -84,7 +84,7 @@ impl Site {
     }
 
     async fn submit(&self, id: &str) -> Submitted {
-        let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![self.spec(id)] };
+        let submit = Submit::new("b", Priority::Normal, vec![self.spec(id)]);
         self.ask(keys::SUBMIT, &submit).await
     }
 
@@ -160,7 +160,7 @@ async fn a_scenario_is_made_over_the_bus_and_known_after_a_restart() {
     };
     let welcome: Welcome = site.ask(keys::HELLO, &hello).await;
     assert!(matches!(welcome, Welcome::Welcome { epoch: 1, lease_ms: 15_000, beat_ms: 2_000 }));
-    assert_eq!(site.submit("a").await, Submitted::Accepted { new: 1 });
+    assert_eq!(site.submit("a").await, Submitted::Accepted { new: 1, held: 0 });
     let first = site.grant("q0").await;
     assert_eq!(site.grant("q0").await, first, "the same question, the same grant");
     assert_eq!(site.report(&first, Some("text")).await, Recorded::Accepted);
@@ -198,7 +198,7 @@ async fn an_acquire_waits_a_little_and_is_served_by_what_comes() {
     assert!(matches!(site.acquire("idle").await, Acquired::None { reason: NoWork::Empty, .. }));
     // The grant comes to the ask that was there first, or to its repetition.
     let (grant, submitted) = tokio::join!(site.grant("q"), site.submit("a"));
-    assert_eq!(submitted, Submitted::Accepted { new: 1 });
+    assert_eq!(submitted, Submitted::Accepted { new: 1, held: 0 });
     assert_eq!(grant.spec.key.stage, Stage::Proposal);
     site.close().await;
 }
@@ -227,7 +227,7 @@ async fn what_cannot_be_read_is_refused_with_a_reason() {
     }
     let mut spec = site.spec("a");
     spec.location = Digest::of(b"not there");
-    let submit = Submit { batch: "b".to_owned(), priority: Priority::Normal, scenarios: vec![spec] };
+    let submit = Submit::new("b", Priority::Normal, vec![spec]);
     let answer: Submitted = site.ask(keys::SUBMIT, &submit).await;
     assert!(matches!(answer, Submitted::Refused { why } if why.contains("location")));
     let requeue = Control::Requeue(ScenarioId::new("nobody").unwrap());

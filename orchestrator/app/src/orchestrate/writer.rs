@@ -192,7 +192,7 @@ async fn answer(bus: &dyn Bus, epoch: u64, reply: Reply) -> Result<(), LinkError
             Answer::Recorded(recorded) => ask.answer(&kind, bus.name(), epoch, &recorded).await,
             Answer::Steered(steered) => ask.answer(&kind, bus.name(), epoch, &steered).await,
             // A control is answered with how many scenarios it touched.
-            Answer::Submitted(Submitted::Accepted { new }) if control => {
+            Answer::Submitted(Submitted::Accepted { new, held: _ }) if control => {
                 ask.answer(&kind, bus.name(), epoch, &new).await
             }
             Answer::Submitted(Submitted::Refused { why }) if control => ask.refuse(bus.name(), epoch, &why).await,

@@ -20,7 +20,7 @@ use serde::Serialize;
 use socrates_model::{Digest, ScenarioEnd};
 
 use crate::sqlite::failure;
-use crate::{SCHEMA_VERSION, StoreError};
+use crate::{SCHEMA_VERSION, StoreError, schema};
 use rules::{READABLE, RULES, Rule};
 
 /// What a rule found.
@@ -168,6 +168,9 @@ pub fn audit(path: &Path) -> Result<Audit, StoreError> {
     let moment = connection.unchecked_transaction().map_err(failed)?;
     if !is_made(&moment, path)? {
         return Ok(Audit::default());
+    }
+    if !moment.query_row(schema::HAS_3, [], |row| row.get::<_, bool>(0)).map_err(failed)? {
+        moment.execute_batch(schema::SINCE_3).map_err(failed)?;
     }
     let mut checked = vec![whole(&moment).map_err(failed)?];
     for rule in &READABLE {

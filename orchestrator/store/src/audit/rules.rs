@@ -22,16 +22,19 @@ pub(super) const READABLE: [Rule; 1] = [Rule {
     name: "readable",
     about: "every row can be read",
     looked_at: "select (select count(*) from scenario) + (select count(*) from job) + (select count(*) from attempt) + \
-                (select count(*) from result) + (select count(*) from event)",
+                (select count(*) from result) + (select count(*) from event) + (select count(*) from batch) + \
+                (select count(*) from series)",
     wrong: "select 'the row of scenario `' || id || '` is no JSON' from scenario where not json_valid(body) \
             union all select 'the row of job `' || job || '` is no JSON' from job where not json_valid(body) \
             union all select 'the row of attempt ' || number || ' of `' || job || '` is no JSON' from attempt where not json_valid(body) \
             union all select 'the result of `' || job || '` is no JSON' from result where not json_valid(body) \
+            union all select 'the row of batch `' || name || '` is no JSON' from batch where not json_valid(body) \
+            union all select 'the series from place ' || place || ' on is no JSON' from series where not json_valid(body) \
             union all select 'entry ' || seq || ' of the outbox is no JSON' from event where not json_valid(body)",
 }];
 
 /// All other rules, in the order in which they are told.
-pub(super) const RULES: [Rule; 16] = [
+pub(super) const RULES: [Rule; 17] = [
     Rule {
         name: "once",
         about: "every scenario, job, attempt, result and dead letter is there once",
@@ -87,7 +90,25 @@ pub(super) const RULES: [Rule; 16] = [
         looked_at: "select count(*) from scenario",
         wrong: "select 'place ' || place || ' is taken ' || count(*) || ' times' from scenario group by place having count(*) > 1 \
                 union all select 'place ' || (place - 1) || ' of the scenarios is empty' from scenario \
-                    where place > 0 and place - 1 not in (select place from scenario)",
+                    where place > 0 and place - 1 not in (select place from scenario) \
+                    and not exists (select 1 from series where scenario.place - 1 >= series.place \
+                        and scenario.place - 1 < series.place + series.count)",
+    },
+    Rule {
+        name: "series",
+        about: "the scenarios of a series that are made are its first ones, in its batch and none that is left out, and no two series overlap",
+        looked_at: "select count(*) from series",
+        wrong: "select 'scenario `' || id || '` is made, and the one before it in its series is not' from scenario join series \
+                    on scenario.place > series.place and scenario.place < series.place + series.count \
+                    where scenario.place - 1 not in (select place from scenario) \
+                union all select 'scenario `' || id || '` is made, and its series leaves it out' from scenario join series \
+                    on scenario.place >= series.place + series.count - series.left_out and scenario.place < series.place + series.count \
+                union all select 'scenario `' || id || '` is of batch `' || scenario.batch || '`, its series of `' || series.batch || '`' \
+                    from scenario join series on scenario.place >= series.place and scenario.place < series.place + series.count \
+                    where scenario.batch != series.batch \
+                union all select 'the series from place ' || later.place || ' on begins in the one from place ' || earlier.place || ' on' \
+                    from series as earlier join series as later on later.place > earlier.place \
+                    and later.place < earlier.place + earlier.count",
     },
     Rule {
         name: "scenario-end",

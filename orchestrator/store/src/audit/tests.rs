@@ -7,7 +7,7 @@ use rusqlite::Connection;
 use socrates_orchestrator::{Policy, State};
 
 use super::{Audit, audit};
-use crate::promises::{submit, work};
+use crate::promises::{submit, submit_series, work};
 use crate::{SCHEMA_VERSION, SqliteStore, Store as _, StoreError};
 
 /// A store of two scenarios, of which the first is done and the second begun.
@@ -36,6 +36,7 @@ fn a_sound_store_passes_after_every_step_while_it_is_written() {
     let mut state = State::new(Policy::default());
     store.save(&submit(&mut state, "a")).unwrap();
     store.save(&submit(&mut state, "b")).unwrap();
+    store.save(&submit_series(&mut state, "line-1", vec![7, 8, 9])).unwrap();
     store.load().unwrap();
     let mut asked = BTreeSet::new();
     while !state.is_done() {
@@ -48,16 +49,16 @@ fn a_sound_store_passes_after_every_step_while_it_is_written() {
     let told = audit(&path).unwrap();
     assert!(is_sound(&told), "{:#?}", told.wrong());
     let counts = told.counts;
-    assert_eq!((counts.scenarios, counts.ended, counts.jobs, counts.results, counts.reigns), (2, 2, 22, 22, 1));
+    assert_eq!((counts.scenarios, counts.ended, counts.jobs, counts.results, counts.reigns), (5, 5, 55, 55, 1));
     // Every rule was asked of something, so that none passes because it looks nowhere.
     asked.extend(told.checked.iter().filter(|one| one.looked_at > 0).map(|one| one.rule));
     assert_eq!(asked, told.checked.iter().map(|one| one.rule).collect());
     assert_eq!(
         told.scenarios.iter().map(|one| (one.scenario.as_str(), one.scored)).collect::<Vec<_>>(),
-        [("a", true), ("b", true)]
+        [("a", true), ("b", true), ("line-1", true), ("line-2", true), ("line-3", true)]
     );
     // One output a result, and three inputs a scenario.
-    assert_eq!(told.named.len(), 22 + 6);
+    assert_eq!(told.named.len(), 55 + 15);
 }
 
 #[test]
@@ -148,6 +149,53 @@ fn what_is_damaged_is_named_by_the_rule_that_it_breaks() {
         let wrong = &told.checked.iter().find(|one| one.rule == rule).unwrap().wrong;
         assert!(wrong.iter().any(|wrong| wrong.contains(words)), "{damage}: {:#?}", told.wrong());
     }
+}
+
+#[test]
+fn a_series_of_which_the_wrong_scenarios_are_made_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = dir.path().join("jobs.sqlite");
+    let mut store = SqliteStore::open(&whole).unwrap();
+    let mut state = State::new(Policy::default());
+    store.save(&submit_series(&mut state, "line-1", (7..107).collect())).unwrap();
+    store.save(&submit(&mut state, "after")).unwrap();
+    let told = audit(&whole).unwrap();
+    // The places of scenarios that are not made yet are no gap.
+    assert!(is_sound(&told) && told.counts.scenarios == 17, "{:#?}", told.wrong());
+    drop(store);
+    for (damage, words) in [
+        ("update scenario set place = 40 where id = 'line-7'", "scenario `line-7` is made, and the one before it"),
+        ("update series set left_out = 90", "scenario `line-11` is made, and its series leaves it out"),
+        ("update scenario set batch = 'x' where id = 'line-2'", "is of batch `x`, its series of `line`"),
+        (
+            "insert into series select 50, batch, 9, 0, body from series",
+            "from place 50 on begins in the one from place 0 on",
+        ),
+    ] {
+        let path = dir.path().join("damaged.sqlite");
+        std::fs::copy(&whole, &path).unwrap();
+        Connection::open(&path).unwrap().execute_batch(damage).unwrap();
+        let wrong = audit(&path).unwrap().checked.into_iter().find(|one| one.rule == "series").unwrap().wrong;
+        assert!(wrong.iter().any(|wrong| wrong.contains(words)), "{damage}: {wrong:#?}");
+    }
+}
+
+#[test]
+fn a_store_of_before_series_is_audited_and_read_as_it_is() {
+    let dir = tempfile::tempdir().unwrap();
+    let (path, open) = store(dir.path());
+    drop(open);
+    let old = "drop table series; drop table batch; update meta set value = '2' where name = 'schema_version'";
+    Connection::open(&path).unwrap().execute_batch(old).unwrap();
+    let told = audit(&path).unwrap();
+    assert!(is_sound(&told) && told.counts.scenarios == 2, "{:#?}", told.wrong());
+    let read = crate::Reader::open(&path).unwrap().all().unwrap();
+    assert_eq!((read.scenarios.len(), read.queues.len(), read.batches.len()), (2, 0, 0));
+    // The next orchestrator writes on in it.
+    let mut store = SqliteStore::open(&path).unwrap();
+    let mut state = State::restore(store.load().unwrap(), Policy::default(), 0);
+    store.save(&submit_series(&mut state, "line-1", vec![7, 8])).unwrap();
+    assert_eq!(crate::Reader::open(&path).unwrap().all().unwrap().queues.len(), 1);
 }
 
 #[test]
