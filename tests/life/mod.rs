@@ -25,6 +25,7 @@ mod release;
 mod repairs;
 mod requests;
 mod restarts;
+mod series;
 mod slow_author;
 mod soundness;
 mod steering;

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use socrates_link::{Bus, LinkError, call, keys};
 use socrates_model::wire::{
-    Control, PastAsk, PastEnd, PastPart, Priority, ScenarioSpec, StatusAsk, StatusReply, Steer, Steered, Submit,
-    Submitted,
+    Control, Limits, PastAsk, PastEnd, PastPart, Priority, ScenarioSpec, Series, StatusAsk, StatusReply, Steer,
+    Steered, Submit, Submitted,
 };
 use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
@@ -38,28 +38,58 @@ pub(crate) async fn submit(
     let mut specs = specs.into_iter().peekable();
     while specs.peek().is_some() {
         let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
-        let wish = Submit::new(batch, priority, scenarios);
-        let started = Instant::now();
-        loop {
-            match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
-                Ok(Submitted::Accepted { new, held: _ }) => {
-                    fresh = fresh.saturating_add(new.into());
-                    break;
-                }
-                Ok(Submitted::Refused { why }) => {
-                    return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
-                }
-                Ok(Submitted::Busy { retry_after_ms }) => {
-                    tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await
-                }
-                Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
-                    tokio::time::sleep(Duration::from_millis(50)).await;
-                }
-                Err(why) => return Err(Complaint::resumes(why.to_string())),
-            }
-        }
+        let (new, _) = hand_in(bus, &Submit::new(batch, priority, scenarios)).await?;
+        fresh = fresh.saturating_add(new.into());
     }
     Ok(fresh)
+}
+
+/// Submits a series; gives how many of its scenarios were not known before.
+pub(crate) async fn submit_series(
+    bus: &dyn Bus,
+    batch: &str,
+    priority: Priority,
+    series: Series,
+) -> Result<u64, Complaint> {
+    let count = series.count();
+    let wish = Submit { series: vec![series], ..Submit::new(batch, priority, Vec::new()) };
+    match hand_in(bus, &wish).await? {
+        (new, held) if held == count => Ok(new.into()),
+        (_, held) => Err(earlier(&format!("it took {held} of the {count} scenarios of a series"))),
+    }
+}
+
+/// Says what a batch may take; before its scenarios are submitted.
+pub(crate) async fn limit(bus: &dyn Bus, batch: &str, limits: Limits) -> Result<(), Complaint> {
+    hand_in(bus, &Submit { limits, ..Submit::new(batch, Priority::Normal, Vec::new()) }).await?;
+    Ok(())
+}
+
+fn earlier(what: &str) -> Complaint {
+    Complaint::input(
+        format!("the orchestrator is of an earlier version: {what}"),
+        "start `socrates cluster up` of this version, and its workers",
+    )
+}
+
+/// Puts one submission until it is taken or refused; gives how many scenarios are new, and how many its series have.
+async fn hand_in(bus: &dyn Bus, wish: &Submit) -> Result<(u32, u32), Complaint> {
+    let started = Instant::now();
+    loop {
+        match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", wish, CALL).await {
+            Ok(Submitted::Accepted { new, held }) => return Ok((new, held)),
+            Ok(Submitted::Refused { why }) => {
+                return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
+            }
+            Ok(Submitted::Busy { retry_after_ms }) => {
+                tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await;
+            }
+            Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
+                tokio::time::sleep(Duration::from_millis(50)).await;
+            }
+            Err(why) => return Err(Complaint::resumes(why.to_string())),
+        }
+    }
 }
 
 /// How things stand.

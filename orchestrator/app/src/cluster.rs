@@ -6,7 +6,7 @@ use serde_json::json;
 use socrates_kit::{Blobs, LocalBlobs};
 use socrates_link::rules::Role;
 use socrates_model::Digest;
-use socrates_model::wire::{Priority, ScenarioSpec};
+use socrates_model::wire::{Limits, Priority, ScenarioSpec};
 
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
@@ -18,7 +18,7 @@ use crate::prepare::Prepared;
 use crate::refused::Refused;
 use crate::run::prepared_all;
 use crate::run_options::RunOptions;
-use crate::wanted::{Wanted, specs, wanted};
+use crate::wanted::drawn;
 use crate::words::plural;
 use crate::{calls, process, variants};
 
@@ -33,6 +33,8 @@ pub struct SubmitOptions {
     pub batch: Option<String>,
     /// How urgent it is beside other batches.
     pub priority: Priority,
+    /// What it may take.
+    pub limits: Limits,
 }
 
 /// Submits requests and returns; `socrates status ENDPOINT` shows how they stand, `socrates cluster collect` writes their bundles.
@@ -51,19 +53,23 @@ pub async fn submit(
     if !refused.is_empty() {
         Refused::told(talk, &refused, prepared.len())?;
     }
+    for one in &prepared {
+        crate::prices::check_cents(config, &one.author, "--max-cents", to.limits.money / 10_000)?;
+    }
     told_apart(&mut prepared);
     let (library, _) = wish(&prepared, options);
     let bus = process::client(config, Role::Client, &to.connect, &to.namespace, "submit").await?;
     let folder = tempfile::tempdir_in(&config.program().temp).map_err(|why| ours(why.to_string()))?;
     let blobs = LocalBlobs::new(folder.path(), false);
     let plans = variants::plans(talk, prepared.iter(), options.seed, options.repeats)?;
-    let wanted = wanted(&prepared, options.seed, &plans)?;
-    let mut specs = specs(&wanted, config, options, &blobs)?;
+    let (mut single, mut series) = drawn(&prepared, &plans, config, options, &blobs)?;
     let orders = orders(&prepared, library, &blobs)?;
-    for (spec, want) in specs.iter_mut().zip(&wanted) {
-        spec.order = order(&prepared, &orders, want).map(|(digest, _)| *digest);
+    let firsts = series.iter_mut().map(|(place, series)| (place, &mut series.first));
+    for (place, spec) in single.iter_mut().map(|(place, spec)| (place, spec)).chain(firsts) {
+        spec.order = orders.get(*place).map(|(digest, _)| *digest);
     }
-    let mut digests: Vec<Digest> = specs.iter().flat_map(inputs).collect();
+    let firsts = series.iter().map(|(_, series)| &series.first);
+    let mut digests: Vec<Digest> = single.iter().map(|(_, spec)| spec).chain(firsts).flat_map(inputs).collect();
     digests.extend(orders.iter().flat_map(|(_, order)| order.contents()));
     digests.sort();
     digests.dedup();
@@ -74,9 +80,17 @@ pub async fn submit(
             .await
             .map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
     }
-    let count = specs.len();
+    let many = series.iter().map(|(_, series)| usize::try_from(series.count()).unwrap_or(usize::MAX)).sum::<usize>();
+    let count = single.len() + many;
     let batch = to.batch.clone().unwrap_or_else(|| format!("batch-{}", library.short()));
-    let fresh = calls::submit(bus.as_ref(), &batch, to.priority, specs).await?;
+    if !to.limits.are_none() {
+        calls::limit(bus.as_ref(), &batch, to.limits).await?;
+    }
+    let singles = single.into_iter().map(|(_, spec)| spec).collect();
+    let mut fresh = calls::submit(bus.as_ref(), &batch, to.priority, singles).await?;
+    for (_, series) in series {
+        fresh = fresh.saturating_add(calls::submit_series(bus.as_ref(), &batch, to.priority, series).await?);
+    }
     bus.close().await;
     talk.line(&format!(
         "submitted  {} from {} as `{batch}`{}",
@@ -127,12 +141,6 @@ fn orders(prepared: &[Prepared], library: Digest, blobs: &LocalBlobs) -> Result<
         Ok((put(order.text()?.as_bytes())?, order))
     };
     prepared.iter().map(one).collect()
-}
-
-/// The order of the request that a scenario is made from.
-fn order<'a>(prepared: &[Prepared], orders: &'a [(Digest, Order)], want: &Wanted<'_>) -> Option<&'a (Digest, Order)> {
-    let of = prepared.iter().zip(orders).find(|(one, _)| std::ptr::eq(*one, want.prepared));
-    of.map(|(_, order)| order)
 }
 
 /// What a scenario needs that is stored under its digest.

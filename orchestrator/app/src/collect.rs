@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use socrates_kit::Blobs;
 use socrates_link::Bus;
 use socrates_link::rules::Role;
-use socrates_model::wire::PastEnd;
+use socrates_model::wire::{PastEnd, StatusAsk};
 use socrates_model::{Digest, Location};
 use socrates_orchestrator::Snapshot;
 use tokio::runtime::Handle;
@@ -60,11 +60,12 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
     let bus = process::client(config, Role::Client, &options.connect, &options.namespace, "collect").await?;
     let ends = of_batch(calls::ends(bus.as_ref()).await?, options.batch.as_deref())?;
     let Some(first) = ends.first() else { return Err(empty(&options.connect)) };
-    let keep = options.keep.unwrap_or_else(|| Keep::of(ends.len()));
+    let total = total(bus.as_ref(), &first.batch).await?.max(ends.len());
+    let keep = options.keep.unwrap_or_else(|| Keep::of(total));
     let known = Arc::new(Known { bus: Arc::clone(&bus), config: config.clone(), keep, orders: Mutex::default() });
     let library = Known::library(&known, first).await?;
     let done: Vec<PastEnd> = ends.iter().filter(|end| end.end.is_some()).cloned().collect();
-    talk.line(&format!("batch      `{}` · {} of {} done", first.batch, done.len(), plural(ends.len(), "scenario")));
+    talk.line(&format!("batch      `{}` · {} of {} done", first.batch, done.len(), plural(total, "scenario")));
     let root = match place::place(&options.out, library, false) {
         Place::Finished(root) | Place::New(root) => place::told(talk, &options.out, root),
     };
@@ -73,17 +74,28 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
     let hold = Hold::take(&work)?;
     let made = bundles(talk, &known, &done, &root, &work, &hold).await?;
     bus.close().await;
-    many::write(talk, &root, &work, Library::new(library, None, ends.len(), known.readings()), made)?;
+    many::write(talk, &root, &work, Library::new(library, None, total, known.readings()), made)?;
     drop(std::fs::remove_dir_all(&work));
     let code = many::finish(talk, Require::Any, &root, &[])?;
     if done.len() < ends.len() {
-        let open = ends.len() - done.len();
+        let open = plural(ends.len() - done.len(), "scenario");
+        talk.line(&format!("open       {open} are being made; the same command again fetches them"));
+    }
+    if ends.len() < total {
+        let later = plural(total - ends.len(), "scenario");
         talk.line(&format!(
-            "open       {} are being made; the same command again fetches them",
-            plural(open, "scenario")
+            "later      {later} were not begun; `socrates status {}` says whether they will be",
+            options.connect
         ));
     }
     Ok(code)
+}
+
+/// Scenarios of a batch, those that are not made yet among them.
+async fn total(bus: &dyn Bus, batch: &str) -> Result<usize, Complaint> {
+    let ask = StatusAsk { batch: batch.to_owned(), table: true, ..StatusAsk::default() };
+    let told = calls::status(bus, &ask).await.map_err(calls::silent)?;
+    Ok(usize::try_from(told.total).unwrap_or(usize::MAX))
 }
 
 /// The scenarios of one batch in their order.

@@ -52,12 +52,17 @@ pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>,
 /// A limit of money holds only where the author has a price.
 pub(crate) fn check_limit(config: &Config, author: &AuthorSpec) -> Result<(), Complaint> {
     let limit = config.number("orchestrator.cents_per_scenario");
+    check_cents(config, author, "orchestrator.cents_per_scenario", limit)
+}
+
+/// The same of a limit in cents that has another name; 0 sets none.
+pub(crate) fn check_cents(config: &Config, author: &AuthorSpec, name: &str, limit: u64) -> Result<(), Complaint> {
     let Some((kind, model)) = author.server().filter(|_| limit > 0) else { return Ok(()) };
     if price_of(&prices_of(config)?, &format!("{}:{model}", kind.name())).is_some() {
         return Ok(());
     }
     Err(Complaint::input(
-        format!("`orchestrator.cents_per_scenario` is {limit}, but `{model}` has no price"),
+        format!("`{name}` is {limit}, but `{model}` has no price"),
         "`author.prices` names a table of prices; a model without one would be asked without a limit",
     ))
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use socrates_kit::LocalBlobs;
 use socrates_model::ScenarioId;
-use socrates_model::wire::ScenarioSpec;
+use socrates_model::wire::{ScenarioSpec, Seeds, Series};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -60,6 +60,42 @@ pub(crate) fn specs<'a>(
         Ok(spec)
     };
     wanted.iter().map(&mut of).collect()
+}
+
+/// Scenarios of a request that are submitted one by one, at most; more of them are a series.
+const ONE_BY_ONE: usize = 16;
+/// Seeds of one series at most, so that it fits a message.
+const SEEDS: usize = 4_000;
+
+/// Every scenario of these requests by its plan: where they are few, one by one, else as series of those that differ by name and seed alone.
+/// With the place of the request that each is made from. The inputs are stored.
+#[expect(clippy::type_complexity, reason = "two lists of the same kind")]
+pub(crate) fn drawn(
+    prepared: &[Prepared],
+    plans: &[Plan],
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<(Vec<(usize, ScenarioSpec)>, Vec<(usize, Series)>), Complaint> {
+    let (mut single, mut series) = (Vec::new(), Vec::new());
+    for (place, (one, plan)) in prepared.iter().zip(plans).enumerate() {
+        let named = |index: u32| scenario_id(&one.name, options.seed, index, one.request.run.variants);
+        let Some(seed) = plan.seeds.first() else { continue };
+        let first = spec(&Wanted { id: named(0)?, index: 0, seed: *seed, prepared: one }, config, options, blobs)?;
+        let at_once = if plan.seeds.len() > ONE_BY_ONE { SEEDS } else { 1 };
+        let mut index = 0;
+        for seeds in plan.seeds.chunks(at_once) {
+            let Some(seed) = seeds.first() else { continue };
+            let first = ScenarioSpec { id: named(index)?, seed: *seed, ..first.clone() };
+            index = index.saturating_add(u32::try_from(seeds.len()).unwrap_or(u32::MAX));
+            if at_once == 1 {
+                single.push((place, first));
+            } else {
+                series.push((place, Series { first, seeds: Seeds::Listed(seeds.to_vec()) }));
+            }
+        }
+    }
+    Ok((single, series))
 }
 
 /// Stores the inputs of a scenario and names them.

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use socrates_link::LinkError;
-use socrates_model::job::{Artifact, INLINE_BYTES};
+use socrates_model::job::{Artifact, INLINE_BYTES, JobKey};
 use socrates_model::wire::{Grant, Outcome, Report};
 use socrates_model::{Digest, FailureClass, Fault, FaultCode, Role, Where};
 use tokio::task::{JoinError, JoinSet};
 use tokio::time::Instant;
 
-use crate::blobs::BlobError;
+use crate::blobs::{BlobError, Blobs};
 use crate::cancel::Cancel;
 use crate::error::KitError;
 use crate::held::slot_of;
@@ -123,31 +123,37 @@ fn broke(grant: &Grant, why: JoinError) -> Failure {
 
 type Inputs = (BTreeMap<Role, Vec<u8>>, Option<String>);
 
-async fn inputs(worker: &Worker, grant: &Grant) -> Result<Inputs, Failure> {
+async fn inputs(worker: &Arc<Worker>, grant: &Grant) -> Result<Inputs, Failure> {
     let mut fetched = BTreeMap::new();
-    for (role, digest) in &grant.spec.inputs {
-        fetched.insert(*role, input(worker, grant, *role, *digest).await?);
-    }
-    let refused = match grant.spec.refused {
-        Some(digest) => {
-            let bytes = input(worker, grant, Role::Refused, digest).await?;
-            Some(String::from_utf8_lossy(&bytes).into_owned())
+    // All at once: each is a question of its own where artifacts come over the bus.
+    let mut asked = JoinSet::new();
+    let inputs = grant.spec.inputs.iter().map(|(role, digest)| (*role, *digest));
+    for (role, digest) in inputs.chain(grant.spec.refused.map(|digest| (Role::Refused, digest))) {
+        let inline = grant.inline.get(&digest).filter(|text| Digest::of(text.as_bytes()) == digest);
+        if let Some(bytes) = inline.map(|text| text.clone().into_bytes()).or_else(|| worker.inputs.get(&digest)) {
+            fetched.insert(role, bytes);
+            continue;
         }
-        None => None,
-    };
+        let (worker, key) = (Arc::clone(worker), grant.spec.key.clone());
+        asked.spawn(async move { input(&worker, &key, role, digest).await.map(|bytes| (role, bytes)) });
+    }
+    while let Some(came) = asked.join_next().await {
+        let (role, bytes) = came.map_err(|why| broke(grant, why))??;
+        fetched.insert(role, bytes);
+    }
+    let refused = fetched.remove(&Role::Refused).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     Ok((fetched, refused))
 }
 
-async fn input(worker: &Worker, grant: &Grant, role: Role, digest: Digest) -> Result<Vec<u8>, Failure> {
-    if let Some(text) = grant.inline.get(&digest)
-        && Digest::of(text.as_bytes()) == digest
-    {
-        return Ok(text.clone().into_bytes());
-    }
-    worker.config.blobs.get(&worker.bus, digest, worker.config.timeout).await.map_err(|why| {
+async fn input(worker: &Worker, key: &JobKey, role: Role, digest: Digest) -> Result<Vec<u8>, Failure> {
+    let bytes = worker.config.blobs.get(&worker.bus, digest, worker.config.timeout).await.map_err(|why| {
         let message = format!("input `{role}` could not be fetched: {}", chain(&why));
-        Fault::new(FaultCode::JBlob, &grant.spec.key, message).into()
-    })
+        Failure::from(Fault::new(FaultCode::JBlob, key, message))
+    })?;
+    if matches!(worker.config.blobs, Blobs::Bus) {
+        worker.inputs.keep(digest, &bytes);
+    }
+    Ok(bytes)
 }
 
 /// An error with its causes in one line.

@@ -6,6 +6,7 @@ use std::time::Duration;
 use socrates_link::{Ask, Bus, LinkError, call, keys};
 use socrates_model::Digest;
 use socrates_model::wire::{BlobGet, BlobPart, BlobPut};
+use tokio::task::JoinSet;
 
 use crate::blobs::{BlobError, LocalBlobs, off_thread};
 
@@ -17,6 +18,8 @@ const KIND_PUT: &str = "blob_put";
 const PART_BYTES: usize = 48 * 1024;
 /// Tries per part before the whole transfer is given up; the attempt is then reported as passing trouble.
 const TRIES: u32 = 5;
+/// Parts that are read for somebody at one time at most.
+const READING: usize = 64;
 /// Largest artifact that is taken over the bus, bytes: a recording of an hour with forty people.
 const MAX_BYTES: u64 = 1 << 30;
 
@@ -85,15 +88,24 @@ pub(crate) async fn store(bus: &Arc<dyn Bus>, bytes: &[u8], timeout: Duration) -
 /// [`LinkError`] when the keys cannot be served.
 pub async fn serve_blobs(bus: Arc<dyn Bus>, blobs: LocalBlobs) -> Result<(), LinkError> {
     let (mut gets, mut puts) = (bus.serve(keys::BLOB_GET).await?, bus.serve(keys::BLOB_PUT).await?);
+    let mut reading = JoinSet::new();
     loop {
-        let (ask, answered) = tokio::select! {
-            Some(ask) = gets.next() => (keys::BLOB_GET, answer_get(&*bus, ask, &blobs).await),
-            Some(ask) = puts.next() => (keys::BLOB_PUT, answer_put(&*bus, ask, &blobs).await),
+        tokio::select! {
+            // Parts of one artifact are written one after another; any number may be read at one time.
+            Some(ask) = puts.next() => answered(keys::BLOB_PUT, answer_put(&*bus, ask, &blobs).await),
+            Some(ask) = gets.next(), if reading.len() < READING => {
+                let (bus, blobs) = (Arc::clone(&bus), blobs.clone());
+                reading.spawn(async move { answered(keys::BLOB_GET, answer_get(&*bus, ask, &blobs).await) });
+            }
+            Some(_read) = reading.join_next() => {}
             else => return Ok(()),
-        };
-        if let Err(why) = answered {
-            tracing::debug!(key = ask, %why, "a reply about an artifact did not go out");
         }
+    }
+}
+
+fn answered(key: &str, sent: Result<(), LinkError>) {
+    if let Err(why) = sent {
+        tracing::debug!(key, %why, "a reply about an artifact did not go out");
     }
 }
 

@@ -63,6 +63,12 @@ impl LocalBlobs {
         Self { root: root.into(), durable }
     }
 
+    /// The same folder, where what is put may be lost by a power cut.
+    #[must_use]
+    pub fn unforced(&self) -> Self {
+        Self { root: self.root.clone(), durable: false }
+    }
+
     /// The folder.
     #[must_use]
     pub fn root(&self) -> &Path {

@@ -15,6 +15,7 @@
 mod error;
 pub use error::KitError;
 
+mod cache;
 mod cancel;
 mod job;
 mod stage;

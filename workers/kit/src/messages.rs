@@ -13,6 +13,7 @@ use socrates_model::seeds::derive_seed;
 use socrates_model::wire::{Hello, Recorded, Release, Report};
 use tokio::sync::watch;
 
+use crate::cache::Cache;
 use crate::config::WorkerConfig;
 use crate::error::KitError;
 use crate::held::{Held, Slot};
@@ -25,6 +26,8 @@ pub(crate) struct Worker {
     pub(crate) config: WorkerConfig,
     pub(crate) held: Held,
     pub(crate) spool: Spool,
+    /// Inputs that came over the bus.
+    pub(crate) inputs: Cache,
     /// Highest reign seen; replies of lower ones are stale.
     epoch: AtomicU64,
     /// Whether the orchestrator of this reign was not told yet who this worker is.
@@ -77,6 +80,7 @@ impl Worker {
             config,
             held: Held::default(),
             spool,
+            inputs: Cache::default(),
             epoch: AtomicU64::new(0),
             unknown: AtomicBool::new(false),
             leaving: watch::Sender::new(false),

@@ -39,13 +39,15 @@ fn lacks(blobs: &LocalBlobs, artifact: &Artifact) -> Result<Option<String>, Blob
     if found != *digest {
         return Ok(Some(format!("the content has digest `{found}`, not `{digest}`")));
     }
-    blobs.put(text.as_bytes())?;
+    // Not forced to disk: the store keeps it as a text in the commit that records the report, and puts it back where a power cut took it.
+    blobs.unforced().put(text.as_bytes())?;
     Ok(None)
 }
 
 /// The first input that was submitted but is not there.
 pub(super) fn missing_input(blobs: &LocalBlobs, submit: &Submit) -> Option<String> {
-    submit.scenarios.iter().find_map(|spec| {
+    let firsts = submit.series.iter().map(|series| &series.first);
+    submit.scenarios.iter().chain(firsts).find_map(|spec| {
         let inputs = [(Role::Request, spec.request), (Role::Location, spec.location), (Role::Reading, spec.reading)];
         let pinned = spec.pinned.iter().map(|(role, digest)| (*role, *digest));
         let named = inputs.into_iter().chain(pinned).map(|(role, digest)| (role.to_string(), digest));

@@ -183,7 +183,8 @@ fn open(
     let mut store = SqliteStore::open_with(at, durability)?;
     let snapshot = store.load().context("reading the job store")?;
     for digest in store.texts()? {
-        if !blobs.has(&digest)
+        // Looked into, not only for: a power cut may have left a file without its content.
+        if blobs.get(&digest).is_err()
             && let Some(text) = store.text(&digest)?
         {
             blobs.put(text.as_bytes()).context("putting a text back among the artifacts")?;

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+#[cfg(test)]
+use socrates_model::wire::Limits;
 use socrates_model::wire::{BatchStatus, Part};
 
 use crate::progress::span;
@@ -30,10 +32,10 @@ pub(super) fn lines(paused: &[Part], batches: &[BatchStatus], left: u32, now_ms:
 }
 
 fn line(batch: &BatchStatus, now_ms: u64) -> String {
-    let BatchStatus { name, total, done, failed, canceled, running, paused, since_ms, .. } = batch;
+    let BatchStatus { name, total, done, failed, canceled, running, paused, since_ms, unmade, over, .. } = batch;
     let open = total.saturating_sub(*done);
     let mut words = format!("batch      {name:<28} {done} done · {open} open · {failed} failed");
-    for (count, word) in [(*canceled, "given up"), (*running, "running")] {
+    for (count, word) in [(*canceled, "given up"), (*running, "running"), (*unmade, "not made yet")] {
         if count > 0 {
             words.push_str(&format!(" · {count} {word}"));
         }
@@ -44,7 +46,30 @@ fn line(batch: &BatchStatus, now_ms: u64) -> String {
     if let Some(age_ms) = now_ms.checked_sub(*since_ms).filter(|_| *since_ms > 0) {
         words.push_str(&format!(" · since {}", span(Duration::from_millis(age_ms).as_secs_f64())));
     }
+    for (taken, limit) in budgets(batch) {
+        words.push_str(&format!(" · {taken} of {limit}"));
+    }
+    if !over.is_empty() {
+        words.push_str(&format!("\n           nothing more of it is begun: {over}"));
+    }
     words
+}
+
+/// What a batch has taken of what it may take, in words, where it has limits.
+fn budgets(batch: &BatchStatus) -> Vec<(String, String)> {
+    let (taken, limits) = (batch.taken, batch.limits);
+    let time = |ms: u64| span(Duration::from_millis(ms).as_secs_f64());
+    let cents = |money: u64| format!("{} cents", money / 10_000);
+    let tokens = |tokens: u64| format!("{tokens} tokens");
+    [
+        (limits.deadline_ms > 0, time(taken.deadline_ms), time(limits.deadline_ms)),
+        (limits.tokens > 0, taken.tokens.to_string(), tokens(limits.tokens)),
+        (limits.money > 0, (taken.money / 10_000).to_string(), cents(limits.money)),
+    ]
+    .into_iter()
+    .filter(|(set, ..)| *set)
+    .map(|(_, taken, limit)| (taken, limit))
+    .collect()
 }
 
 #[cfg(test)]
@@ -75,5 +100,17 @@ mod tests {
             ]
         );
         assert!(lines(&[], &[], 0, 0).is_empty());
+        let long = BatchStatus {
+            unmade: 900,
+            limits: Limits { deadline_ms: 7_200_000, tokens: 5_000, money: 3_000_000 },
+            taken: Limits { deadline_ms: 60_000, tokens: 5_100, money: 20_000 },
+            over: "the batch spent 5100 tokens".to_owned(),
+            ..batch("long", false, 0)
+        };
+        assert_eq!(
+            line(&long, 0),
+            "batch      long                         2 done · 3 open · 1 failed · 1 running · 900 not made yet · 1 min 0 s of 2 h 0 min · \
+             5100 of 5000 tokens · 2 of 300 cents\n           nothing more of it is begun: the batch spent 5100 tokens"
+        );
     }
 }

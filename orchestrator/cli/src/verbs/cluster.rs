@@ -7,15 +7,19 @@ use socrates_app::cluster::{self, SubmitOptions};
 use socrates_app::cluster_work::{self, WorkOptions};
 use socrates_app::collect::{self, CollectOptions};
 use socrates_app::config::Config;
+use socrates_app::exit::Complaint;
 use socrates_app::keep::Keep;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
 use socrates_app::steer::{self, Act, SteerOptions, Whom};
-use socrates_model::wire::Priority;
+use socrates_model::wire::{Limits, Priority};
 
 use super::keys::{Keys, MakeKeys};
 use super::run::Options;
 use super::{Outcome, done};
+
+/// Longest time of a batch, hours: ten years.
+const MOST_HOURS: f64 = 87_600.0;
 
 /// Arguments of `cluster`.
 #[derive(Debug, Args)]
@@ -35,7 +39,7 @@ enum ClusterVerb {
     /// Serve one stage with one process.
     Worker(Worker),
     /// Hand requests to a running orchestrator and return.
-    Submit(Submit),
+    Submit(Box<Submit>),
     /// Write the bundles of a batch that are done, with page and tables; also while others are being made, and again.
     Collect(Collect),
     /// Hand out no more jobs: of a stage, of a batch, or at all. What workers hold is finished.
@@ -94,9 +98,41 @@ struct Submit {
     /// of the next; none waits for ever.
     #[arg(long, default_value = "normal")]
     priority: Priority,
+    /// Hours that the batch may run, over all its scenarios; what is open then fails. Thirty days if it is left out.
+    #[arg(long, value_name = "H")]
+    max_hours: Option<f64>,
+    /// Tokens, in and out, that the authors of the batch may take. Then nothing more of it is begun; what was begun is finished.
+    #[arg(long, value_name = "N")]
+    max_tokens: Option<u64>,
+    /// Cents that the authors of the batch may cost by the prices of the configuration; as with tokens.
+    #[arg(long, value_name = "N")]
+    max_cents: Option<u64>,
     /// Options of `run`; those that are for this machine are refused.
     #[command(flatten)]
     options: Options,
+}
+
+impl Submit {
+    /// What the batch may take.
+    fn limits(&self) -> Result<Limits, Complaint> {
+        let hours = self.max_hours.unwrap_or(0.0);
+        if !(0.0..=MOST_HOURS).contains(&hours) || self.max_hours == Some(0.0) {
+            return Err(Complaint::input(
+                format!("`--max-hours {hours}` is no time that a batch may run"),
+                format!("allowed: more than 0, at most {MOST_HOURS} hours"),
+            ));
+        }
+        for (option, value) in [("--max-tokens", self.max_tokens), ("--max-cents", self.max_cents)] {
+            if value == Some(0) {
+                let hint = "allowed: 1 or more; without the option there is no limit";
+                return Err(Complaint::input(format!("`{option} 0` lets nothing be made"), hint));
+            }
+        }
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
+        let deadline_ms = (hours * 3_600_000.0).ceil() as u64;
+        let money = self.max_cents.unwrap_or(0).saturating_mul(10_000);
+        Ok(Limits { deadline_ms, tokens: self.max_tokens.unwrap_or(0), money })
+    }
 }
 
 /// Arguments of `cluster collect`.
@@ -191,10 +227,12 @@ impl Cluster {
                 let whom = Whom { batch, scenarios, dead, stage: None };
                 steered(talk, config, at, Act::Requeue, &whom).await
             }
-            ClusterVerb::Submit(Submit { requests, at, batch, priority, options }) => {
+            ClusterVerb::Submit(verb) => {
+                let Submit { requests, at, batch, priority, options, .. } = verb.as_ref();
                 let At { connect, namespace, keys } = at.clone();
                 let config = &keys.over(config)?;
-                let to = SubmitOptions { connect, namespace, batch: batch.clone(), priority: *priority };
+                let (batch, limits) = (batch.clone(), verb.limits()?);
+                let to = SubmitOptions { connect, namespace, batch, priority: *priority, limits };
                 cluster::submit(talk, config, requests, &to, &options.values()).await
             }
             ClusterVerb::Collect(Collect { at, batch, out, keep }) => {
