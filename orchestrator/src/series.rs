@@ -90,27 +90,30 @@ impl Turn<'_> {
 
     /// Makes the next scenarios of the series that have too few ahead; whether any was made.
     pub(crate) fn draw(&mut self) -> bool {
-        let mut made = 0;
-        while let Some(place) = self.state.drawing.first().copied() {
-            let queue = self.state.queues.get_mut(&place).filter(|queue| queue.waiting < AHEAD);
-            let Some((queue, (spec, order))) =
-                queue.and_then(|queue| Some((queue.next()?, queue))).map(|(n, q)| (q, n))
-            else {
+        let mut made = false;
+        // A step makes so many at most; then the clock calls again at once.
+        while self.drawn < AT_ONCE
+            && let Some(place) = self.state.drawing.first().copied()
+        {
+            let wants = self.state.queues.get(&place).filter(|queue| queue.waiting < AHEAD);
+            if let Some((spec, order)) = wants.and_then(Queue::next) {
+                self.make_of(place, order, spec);
+                made = true;
+            } else {
                 self.state.drawing.remove(&place);
-                continue;
-            };
-            if self.drawn >= AT_ONCE {
-                // The clock calls again at once.
-                break;
             }
-            self.drawn += 1;
-            queue.made += 1;
-            queue.waiting += 1;
-            let (batch, priority) = (queue.batch.clone(), queue.priority);
-            self.begin_at(order, &batch, priority, spec);
-            made += 1;
         }
-        made > 0
+        made
+    }
+
+    /// Makes a scenario of the series that begins at a place.
+    fn make_of(&mut self, place: u64, order: u64, spec: ScenarioSpec) {
+        let Some(queue) = self.state.queues.get_mut(&place) else { return };
+        queue.made += 1;
+        queue.waiting += 1;
+        self.drawn += 1;
+        let (batch, priority) = (queue.batch.clone(), queue.priority);
+        self.begin_at(order, &batch, priority, spec);
     }
 
     /// Makes no more scenarios of the series of a batch; how many those are.

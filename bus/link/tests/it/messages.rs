@@ -12,8 +12,8 @@ use socrates_model::report::{Repair, Verdict};
 use socrates_model::standing::{JobState, ScenarioEnd};
 use socrates_model::wire::{
     Acquire, Acquired, Beat, BeatReply, BeatVerdict, BlobGet, BlobPart, BlobPut, Control, Grant, Held, Hello,
-    JobStatus, NoWork, Notice, Outcome, PastAsk, PastEnd, PastPart, Priority, Rate, Rates, Recorded, Release, Report,
-    ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted, Welcome,
+    JobStatus, Limits, NoWork, Notice, Outcome, PastAsk, PastEnd, PastPart, Priority, Rate, Rates, Recorded, Release,
+    Report, ScenarioSpec, ScenarioStatus, Seeds, Series, StatusAsk, StatusReply, Submit, Submitted, Welcome,
 };
 use socrates_model::{AgentId, Digest, FailureClass, PlannerName, Role, Run, ScenarioId};
 
@@ -182,10 +182,19 @@ fn of_clients() -> Vec<Kind> {
         wall_ms: 12,
     };
     let end = PastEnd { place: 4, scenario: scenario.clone(), batch: "b".to_owned(), end: Some(ScenarioEnd::Failed) };
+    let limits = Limits { deadline_ms: 3_600_000, tokens: 100_000, money: 2_000_000 };
+    let listed = Series {
+        first: ScenarioSpec { id: ScenarioId::new("m-01").unwrap(), ..spec() },
+        seeds: Seeds::Listed(vec![7, 9]),
+    };
+    let next = Series { first: ScenarioSpec { id: ScenarioId::new("n-01").unwrap(), ..spec() }, seeds: Seeds::Next(3) };
+    let long = Submit { series: vec![listed, next], limits, ..Submit::new("b", Priority::Normal, Vec::new()) };
     let rows = PastPart::Rows { digest: Digest::of(b"rows"), len: 4, bytes: b"rows".to_vec() };
     vec![
         kind("submit", Submit::new("b", Priority::Bulk, vec![spec()])),
+        kind("submit.series", long),
         kind("submit.answer", Submitted::Accepted { new: 1, held: 0 }),
+        kind("submit.series_answer", Submitted::Accepted { new: 5, held: 5 }),
         kind("submit.refused", Submitted::Refused { why: "known".to_owned() }),
         kind("submit.busy", Submitted::Busy { retry_after_ms: 2_000 }),
         kind("control.pause", Control::Pause("b".to_owned())),
