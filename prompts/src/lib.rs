@@ -27,7 +27,9 @@ pub mod schema;
 
 mod behaviors;
 mod feedback;
+mod order;
 mod place_text;
+mod shown;
 mod terse;
 mod trees;
 mod validate;

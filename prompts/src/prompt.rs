@@ -10,10 +10,10 @@ use crate::message::{Message, Picture, Role};
 use crate::question::Question;
 use crate::schema::answer_schema;
 use crate::style::{BehaviorsForm, Image, Mode, Style};
-use crate::{examples, feedback, place_text, terse, trees, vocabulary, ways};
+use crate::{examples, feedback, order, place_text, shown, terse, trees, vocabulary, ways};
 
 /// Version of the templates: rises with every change of what they ask for.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const SYSTEM: &str = include_str!("../templates/system.md");
 const PROPOSAL: &str = include_str!("../templates/proposal.md");
 const PATHS: &str = include_str!("../templates/paths.md");
@@ -85,7 +85,7 @@ impl Question {
             }
             Stage::Behaviors => messages.push(Message::text(Role::User, self.behaviors_outline())),
         }
-        messages.extend(feedback::messages(&self.feedback, self.refused.as_deref()));
+        messages.extend(feedback::messages(&self.feedback, shown::again(self, style).as_deref()));
         Prompt { messages, schema: (!naive).then(|| answer_schema(self, style)), template }
     }
 
@@ -109,7 +109,10 @@ impl Question {
     fn rules(&self, style: &Style) -> String {
         let shown: Vec<String> = examples::worked(self.stage, style)
             .into_iter()
-            .map(|(question, answer)| format!("{}Answer: {answer}", question.example_of()))
+            .map(|(question, answer)| {
+                let answer = order::written(&answer, order::of(self.stage));
+                format!("{}Answer: {answer}", question.example_of())
+            })
             .collect();
         match self.stage {
             Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {

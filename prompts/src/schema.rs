@@ -8,15 +8,15 @@ use socrates_model::proposal::Relation;
 use socrates_model::reading::FactKind;
 use socrates_model::{HumanId, PlaceClass, Rule};
 
-use crate::place_text;
 use crate::question::Question;
 use crate::style::{BehaviorsForm, PathsForm, Style};
+use crate::{order, place_text};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.
 const MOST_IDS: usize = 250;
 /// With more humans than this they are listed instead of keyed.
 const MOST_KEYED: u32 = 12;
-/// Room to think before the answer proper; its name sorts first in every schema. Not read.
+/// Room to think before the answer proper; the first member of every answer. Not read.
 pub(crate) const THINKING: &str = "analysis";
 
 /// The schema that the answer to this question has to keep. Closed objects, every member required, `null` for nothing;
@@ -117,7 +117,7 @@ fn proposal(question: &Question) -> Value {
     let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
     let place = json!({"type": "string", "enum": places});
     define(&mut schema, &[("human", object(&human)), ("place", place)]);
-    strict(&mut schema);
+    strict(&mut schema, order::of(question.stage));
     schema
 }
 
@@ -180,7 +180,7 @@ fn paths(question: &Question, form: PathsForm) -> Value {
     let mut schema = object(&members);
     let defs: Vec<(&str, Value)> = defs.iter().map(|(name, schema)| (name.as_str(), schema.clone())).collect();
     define(&mut schema, &defs);
-    strict(&mut schema);
+    strict(&mut schema, order::of(question.stage));
     schema
 }
 
@@ -217,7 +217,7 @@ fn behaviors(question: &Question, form: BehaviorsForm) -> Value {
     if let Some(members) = schema.as_object_mut() {
         members.insert("$defs".to_owned(), defs);
     }
-    strict(&mut schema);
+    strict(&mut schema, order::of(question.stage));
     schema
 }
 
@@ -234,9 +234,9 @@ fn human_names(question: &Question) -> Vec<String> {
 
 /// Brings a schema into the strict subset: closed objects, all members required (optional ones may be null),
 /// `anyOf` for `oneOf`, lists of one item form, no titles, formats and defaults.
-fn strict(schema: &mut Value) {
+fn strict(schema: &mut Value, order: &[&str]) {
     match schema {
-        Value::Array(items) => items.iter_mut().for_each(strict),
+        Value::Array(items) => items.iter_mut().for_each(|item| strict(item, order)),
         Value::Object(object) => {
             // What things mean stands in the prompt, once.
             let thinking =
@@ -256,22 +256,25 @@ fn strict(schema: &mut Value) {
             if let Some(items) = object.remove("prefixItems") {
                 object.insert("items".to_owned(), json!({"anyOf": items}));
             }
-            close(object);
+            close(object, order);
             for value in object.values_mut() {
-                strict(value);
+                strict(value, order);
             }
         }
         Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
     }
 }
 
-fn close(object: &mut Map<String, Value>) {
+/// Closes an object. Its list of required members says in which order they are written.
+fn close(object: &mut Map<String, Value>, order: &[&str]) {
     if object.get("type") != Some(&json!("object")) {
         return;
     }
     let given = object.get("required").and_then(Value::as_array).cloned();
     let Some(members) = object.get_mut("properties").and_then(Value::as_object_mut) else { return };
-    let names: Vec<Value> = members.keys().map(|name| json!(name)).collect();
+    let mut names: Vec<&String> = members.keys().collect();
+    names.sort_by(|one, other| order::compare(one, other, order));
+    let names: Vec<Value> = names.into_iter().map(|name| json!(name)).collect();
     if let Some(given) = given {
         for (_, member) in members.iter_mut().filter(|(name, _)| !given.contains(&json!(name))) {
             if !allows_null(member) {
@@ -337,7 +340,9 @@ mod tests {
                 if object.get("type") == Some(&json!("object")) && object.contains_key("properties") {
                     objects += 1;
                     assert_eq!(object["additionalProperties"], json!(false));
-                    let names: Vec<&String> = object["properties"].as_object().unwrap().keys().collect();
+                    let mut names: Vec<&str> =
+                        object["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+                    names.sort_by(|one, other| order::compare(one, other, order::of(stage)));
                     assert_eq!(object["required"], json!(names));
                 }
             });
@@ -350,7 +355,7 @@ mod tests {
         for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
             for style in styles() {
                 let schema = answer_schema(&question(stage), &style);
-                assert_eq!(schema["properties"].as_object().unwrap().keys().next().unwrap(), THINKING);
+                assert_eq!(schema["required"][0], THINKING);
             }
         }
     }

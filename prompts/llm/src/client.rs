@@ -9,8 +9,8 @@ use crate::chat::{ChatAnswer, ChatRequest};
 use crate::dialect::{Dialect, Learned, Rung};
 use crate::error::{ChatError, Objection};
 use crate::key::ApiKey;
-use crate::limits;
 use crate::wire::{self, Call};
+use crate::{limits, ordered};
 
 /// Version of the Messages format that is spoken.
 const ANTHROPIC_VERSION: &str = "2023-06-01";
@@ -197,7 +197,7 @@ impl ChatClient {
         let call = Call { request, config: &self.config, rung };
         let url = Url::parse(&format!("{}{}", self.config.base_url, call.path()))
             .map_err(|error| ChatError::Setup { why: error.to_string() })?;
-        let http = self.http.post(url).header(CONTENT_TYPE, "application/json").body(call.body().to_string());
+        let http = self.http.post(url).header(CONTENT_TYPE, "application/json").body(ordered::text(&call.body()));
         let response = self.signed(http)?.send().await.map_err(|error| self.broken(error))?;
         let status = response.status();
         let headers = response.headers().clone();

@@ -57,14 +57,14 @@ fn move_bounds(schema: &mut Value, bounds: &[&str]) {
     });
 }
 
-/// Says in which order members come, for servers that sort them otherwise.
+/// Says in which order members come, that in which they are required, for servers that sort them otherwise.
 fn order(schema: &mut Value) {
     each(schema, &mut |object| {
-        let names: Option<Vec<String>> =
-            object.get("properties").and_then(Value::as_object).map(|members| members.keys().cloned().collect());
-        if let Some(names) = names {
-            object.insert("propertyOrdering".to_owned(), json!(names));
-        }
+        let Some(members) = object.get("properties").and_then(Value::as_object) else { return };
+        let required = object.get("required").and_then(Value::as_array).cloned().unwrap_or_default();
+        let more = members.keys().map(|name| json!(name)).filter(|name| !required.contains(name));
+        let names: Vec<Value> = required.iter().cloned().chain(more).collect();
+        object.insert("propertyOrdering".to_owned(), Value::Array(names));
     });
 }
 

@@ -23,6 +23,7 @@ pub mod form;
 pub mod key;
 pub mod limits;
 pub mod models;
+mod ordered;
 pub mod probe;
 
 mod waits;

@@ -11,7 +11,7 @@ use crate::chat::{ChatAnswer, ChatRequest, Speaker};
 use crate::client::ClientConfig;
 use crate::dialect::{Rung, Wire};
 use crate::error::{ChatError, Objection};
-use crate::{estimate, waits};
+use crate::{estimate, ordered, waits};
 
 /// Longest piece of a server's own words that is passed on, characters.
 const WORDS: usize = 300;
@@ -68,8 +68,9 @@ impl Call<'_> {
         match &self.request.schema {
             Some(schema) if !self.rung.knows_form() && first == Some(index) => {
                 format!(
-                    "{}\n\n# Form of the answer\nAnswer with one JSON object that keeps to this JSON schema:\n{schema}\n",
-                    turn.text
+                    "{}\n\n# Form of the answer\nAnswer with one JSON object that keeps to this JSON schema:\n{}\n",
+                    turn.text,
+                    ordered::text(schema)
                 )
             }
             Some(_) | None => turn.text.clone(),
