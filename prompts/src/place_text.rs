@@ -35,7 +35,7 @@ pub(crate) fn graph(location: &Location) -> String {
     );
     for node in graph.nodes() {
         let kind = letters.get(node.kind.as_str()).map_or("", String::as_str);
-        text.push_str(&format!("{} {kind} {:.0},{:.0}", node.id, node.at.x, node.at.y));
+        text.push_str(&format!("{} {kind} {},{}", node.id, metres(node.at.x), metres(node.at.y)));
         for other in graph.neighbors(&node.id) {
             let way = graph.edge(&node.id, other).map_or("", |edge| edge.kind.as_str());
             let ends = [Some(node.kind.as_str()), graph.node(other).map(|node| node.kind.as_str())];
@@ -45,6 +45,23 @@ pub(crate) fn graph(location: &Location) -> String {
         text.push('\n');
     }
     text
+}
+
+/// A coordinate with one decimal, which is left out where it is none: nodes may lie within a metre of each other.
+fn metres(value: f64) -> String {
+    let text = format!("{value:.1}");
+    let text = text.strip_suffix(".0").unwrap_or(&text);
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// The nodes of each of these kinds of places, in one text a kind.
+pub(crate) fn places(location: &Location, kinds: impl Iterator<Item = PlaceClass>) -> BTreeMap<&'static str, String> {
+    let graph = &location.graph;
+    let ids = |class: PlaceClass| {
+        let nodes = graph.nodes().iter().filter(move |node| graph.classes(&node.id).contains(&class));
+        nodes.map(|node| node.id.as_str()).collect::<Vec<_>>().join(" ")
+    };
+    kinds.map(|class| (class.name(), ids(class))).collect()
 }
 
 /// A, B, … Z, AA, AB, …
@@ -113,6 +130,19 @@ mod tests {
         let text = graph(&tee_map());
         assert!(text.contains("Types: A CORRIDOR, B INTERSECTION\n"), "{text}");
         assert!(text.contains("\nc B 0,0 w e n\nw A -4,0 c\n"), "{text}");
+    }
+
+    #[test]
+    fn coordinates_have_a_decimal_where_they_need_one() {
+        assert_eq!([2.0, -0.04, 3.26, -1.5, 12.96].map(metres), ["2", "0", "3.3", "-1.5", "13"]);
+    }
+
+    #[test]
+    fn the_nodes_of_a_kind_of_place_are_named() {
+        let kinds = [PlaceClass::Intersection, PlaceClass::Elevator, PlaceClass::Intersection];
+        let map = tee_map();
+        let told: Vec<_> = places(&map, kinds.into_iter()).into_iter().collect();
+        assert_eq!(told, [("elevator", String::new()), ("intersection", "c".to_owned())]);
     }
 
     #[test]

@@ -232,7 +232,7 @@ fn robot_do() -> Vec<(Value, String)> {
     vec![
         row(&RobotDo::Say(Gesture::ExcuseMe), "makes the gesture"),
         row(&RobotDo::Hold(3.0), "stands for so many seconds"),
-        row(&RobotDo::WaitForLeavers, "waits until all who leave are out"),
+        row(&RobotDo::WaitForLeavers, "waits until all who leave are out; `when` it comes to the door, as human_near"),
         row(&RobotDo::Follow(HumanId::new(1)), "follows this human"),
         row(&RobotDo::Abreast(HumanId::new(1)), "goes beside this human"),
         row(&RobotDo::Overtake(HumanId::new(1)), "passes this human, who is slower"),
@@ -248,7 +248,10 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter"),
         setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for"),
         setup(&Predicate::HeadOn { human }, "comes straight at the robot"),
-        setup(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses its way, both there within gap_s"),
+        setup(
+            &Predicate::Crosses { human, gap_s: 3.0 },
+            "crosses its way, both at the crossing within gap_s of each other",
+        ),
         setup(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot"),
         setup(&Predicate::Overtakes { human }, "overtakes the robot"),
         setup(&Predicate::RobotPasses { human }, "the robot passes it"),
@@ -271,7 +274,10 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once"),
         setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time"),
         setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way"),
-        setup(&Predicate::Looks { human, for_s: 2.0 }, "stands and looks at the robot"),
+        setup(
+            &Predicate::Looks { human, for_s: 2.0 },
+            "stands and looks at the robot; `for_s` about half of its rule's `for`",
+        ),
         setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still"),
         setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot"),
         setup(&Predicate::GivesWay { human }, "leaves the robot's way free"),
