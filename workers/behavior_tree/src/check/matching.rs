@@ -20,6 +20,10 @@ pub(super) fn check(cases: &Cases<'_>, ctx: &CheckContext<'_>) -> Vec<Fault> {
             faults.push(Fault::new(code, at, message));
         }
     }
+    // Which comes first is only asked of a tree that does each.
+    if faults.is_empty() {
+        faults.extend(out_of_order(cases, ctx));
+    }
     let at = Where::agent(ctx.human);
     for action in cases.tree.actions() {
         if action != Action::Navigate && !ctx.rules.iter().any(|rule| rule.act == action) {
@@ -82,6 +86,57 @@ fn mismatch(cases: &Cases<'_>, rules: &[Rule], rule: &Rule) -> Option<(FaultCode
         return differs(format!(
             "once started, {act} even when the trigger has passed; put the conditions under a Latch"
         ));
+    }
+    None
+}
+
+/// The first pair of rules of which the tree does the later one where the triggers of both hold: earlier rules win.
+fn out_of_order(cases: &Cases<'_>, ctx: &CheckContext<'_>) -> Option<Fault> {
+    let holds_all =
+        |rule: &Rule, case: &Case| asked(rule).all(|trigger| holds(cases, trigger, &case.truth).unwrap_or(false));
+    let does =
+        |rule: &Rule, case: &Case| case.acts.first().is_some_and(|acts| acts.iter().any(|(act, _)| *act == rule.act));
+    // A rule whose time is over leaves it to the next one.
+    let over = |rule: &Rule, case: &Case| {
+        let timers = cases.atoms.iter().zip(&case.truth);
+        rule.for_s.is_some_and(|secs| {
+            timers.into_iter().any(|(atom, ran_out)| match atom {
+                Atom::Timer(_, found) => *ran_out && (found - secs).abs() < SAME,
+                Atom::World(_) | Atom::Memory(_) | Atom::GoalHere | Atom::Answer(_) => false,
+            })
+        })
+    };
+    // Walking is also what is done otherwise, and a step that is over is not seen from outside.
+    let acts = |rule: &&Rule| rule.act != Action::Navigate && rule.step.is_none();
+    for (place, later) in ctx.rules.iter().enumerate().filter(|(_, rule)| acts(rule)) {
+        let before = ctx.rules.get(..place).unwrap_or_default();
+        for (earlier_place, earlier) in
+            before.iter().enumerate().filter(|(_, rule)| acts(rule) && rule.act != later.act)
+        {
+            // What stands before both may do the same as the later one, and keeps doing it where it is latched.
+            let by_another = |case: &Case| {
+                let first = ctx.rules.get(..earlier_place).unwrap_or_default();
+                first.iter().any(|rule| rule.act == later.act && (rule.latched || holds_all(rule, case)))
+            };
+            let turned = |case: &Case| {
+                holds_all(earlier, case)
+                    && holds_all(later, case)
+                    && !over(earlier, case)
+                    && does(later, case)
+                    && !does(earlier, case)
+                    && !by_another(case)
+            };
+            if cases.all.iter().any(turned) {
+                let (first, second) = (earlier.act.they(), later.act.they());
+                let message = format!(
+                    "{}, {first}, and {}, {second}: where both hold the tree does the second; the proposal has the first one first, so put \
+                     its branch before",
+                    when(earlier),
+                    when(later)
+                );
+                return Some(Fault::new(FaultCode::BMatch, Where::rule(ctx.human, place + 1), message));
+            }
+        }
     }
     None
 }

@@ -184,6 +184,26 @@ fn what_is_missing_and_what_is_too_much_is_found() {
 }
 
 #[test]
+fn rules_are_done_in_the_order_of_the_proposal() {
+    let follow = |for_s| Rule { when: vec![Trigger::RobotNear(3.0)], act: Action::FollowRobot, for_s, ..look() };
+    let tree = |rules: &[Rule]| socrates_bt::compile(HumanId::new(1), rules).unwrap();
+    for for_s in [None, Some(5.0)] {
+        let (asked, turned) = ([follow(for_s), look()], [look(), follow(for_s)]);
+        assert_eq!(faults_of(&tree(&asked), &asked), []);
+        assert_eq!(faults_of(&tree(&turned), &turned), []);
+        let faults = faults_of(&tree(&turned), &asked);
+        assert_eq!(faults.iter().map(|fault| fault.code).collect::<Vec<_>>(), [FaultCode::BMatch], "{faults:?}");
+        assert!(faults[0].to_string().contains("the first one first"), "{}", faults[0]);
+        assert!(codes(&tree(&asked), &turned).contains(&FaultCode::BMatch));
+    }
+    // Rules that never hold together may stand in any order.
+    let standing = |when| Rule { when: vec![Trigger::RobotVisible(5.0), when], ..look() };
+    let (moves, stops) =
+        (standing(Trigger::RobotMoving), Rule { act: Action::GiveWay, ..standing(Trigger::RobotStopped) });
+    assert_eq!(faults_of(&tree(&[moves.clone(), stops.clone()]), &[stops, moves]), []);
+}
+
+#[test]
 fn rules_that_contradict_each_other_are_found() {
     let xml = branches(&[&sequence(&[SEEN, LOOK]), WALK]);
     let rules = [look(), Rule { act: Action::RunAway, ..look() }];
