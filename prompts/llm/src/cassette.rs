@@ -51,6 +51,20 @@ struct Exchange {
     key: String,
     request: Value,
     answer: ChatAnswer,
+    /// Words of whoever recorded it, such as the version of the question; empty in recordings of before.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    note: String,
+}
+
+/// The recording that is most like a request without one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Nearest {
+    /// Its key.
+    pub key: String,
+    /// Members in which the requests differ; turns by their number.
+    pub differs: Vec<String>,
+    /// The note that was kept with it; empty in recordings of before.
+    pub note: String,
 }
 
 impl Cassette {
@@ -88,16 +102,21 @@ impl Cassette {
         Ok(Some(exchange.answer))
     }
 
-    /// Keeps an exchange, in place of an earlier one with the same request.
+    /// Keeps an exchange with a note, in place of an earlier one with the same request.
     ///
     /// # Errors
     /// [`CassetteError::File`] when it cannot be written.
-    pub fn keep(&self, request: &ChatRequest, answer: &ChatAnswer) -> Result<(), CassetteError> {
+    pub fn keep(&self, request: &ChatRequest, answer: &ChatAnswer, note: &str) -> Result<(), CassetteError> {
         let key = Self::key(request);
         let path = self.place(&key);
         let at = |source| CassetteError::File { path: path.clone(), source };
-        let exchange =
-            Exchange { format: FORMAT, key: key.clone(), request: canonical(request), answer: answer.clone() };
+        let exchange = Exchange {
+            format: FORMAT,
+            key: key.clone(),
+            request: canonical(request),
+            answer: answer.clone(),
+            note: note.to_owned(),
+        };
         let text = serde_json::to_string_pretty(&exchange)
             .map_err(|error| CassetteError::Broken { path: path.clone(), why: error.to_string() })?;
         // Neither a request nor an answer should hold a key; a person's text or a server's echo may.
@@ -109,19 +128,19 @@ impl Cassette {
         fs::rename(&draft, &path).map_err(at)
     }
 
-    /// The recorded request that is most like this one: its key, and what differs. For messages about a miss.
+    /// The recorded request that is most like this one. For messages about a miss.
     #[must_use]
-    pub fn nearest(&self, request: &ChatRequest) -> Option<(String, Vec<String>)> {
+    pub fn nearest(&self, request: &ChatRequest) -> Option<Nearest> {
         let wanted = canonical(request);
-        let mut best: Option<(String, Vec<String>)> = None;
+        let mut best: Option<Nearest> = None;
         for path in self.files() {
             let Some(exchange) = fs::read(path).ok().and_then(|bytes| serde_json::from_slice::<Exchange>(&bytes).ok())
             else {
                 continue;
             };
             let differs = differing(&exchange.request, &wanted);
-            if best.as_ref().is_none_or(|(_, fewest)| differs.len() < fewest.len()) {
-                best = Some((exchange.key, differs));
+            if best.as_ref().is_none_or(|fewest| differs.len() < fewest.differs.len()) {
+                best = Some(Nearest { key: exchange.key, differs, note: exchange.note });
             }
         }
         best
@@ -236,7 +255,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cassette = Cassette::at(folder.path().join("tape"));
         assert!(cassette.is_empty() && cassette.find(&request("a")).unwrap().is_none());
-        cassette.keep(&request("a"), &answer()).unwrap();
+        cassette.keep(&request("a"), &answer(), "of a test").unwrap();
         assert_eq!(cassette.find(&request("a")).unwrap(), Some(answer()));
         assert_eq!(cassette.find(&request("b")).unwrap(), None);
         assert_eq!(cassette.len(), 1);
@@ -247,9 +266,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cassette = Cassette::at(folder.path());
         assert_eq!(cassette.nearest(&request("a")), None);
-        cassette.keep(&request("a"), &answer()).unwrap();
+        cassette.keep(&request("a"), &answer(), "of a test").unwrap();
         let other = ChatRequest { seed: Some(9), ..request("b") };
-        let (key, differs) = cassette.nearest(&other).unwrap();
+        let Nearest { key, differs, note } = cassette.nearest(&other).unwrap();
+        assert_eq!(note, "of a test");
         assert_eq!((key, differs), (Cassette::key(&request("a")), vec!["seed".to_owned(), "turns[0]".to_owned()]));
     }
 
@@ -259,7 +279,7 @@ mod tests {
         let cassette = Cassette::at(folder.path());
         let secret = "sk-ant-REDACTED";
         let told = ChatAnswer { text: format!("{{\"a\": \"{secret}\"}}"), ..answer() };
-        cassette.keep(&request(&format!("my key is {secret}")), &told).unwrap();
+        cassette.keep(&request(&format!("my key is {secret}")), &told, "").unwrap();
         let text = fs::read_to_string(&cassette.files()[0]).unwrap();
         assert!(!text.contains("abc123DEF"), "{text}");
         // The key of the exchange is that of the request as it was asked.
@@ -270,7 +290,7 @@ mod tests {
     fn a_broken_file_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let cassette = Cassette::at(folder.path());
-        cassette.keep(&request("a"), &answer()).unwrap();
+        cassette.keep(&request("a"), &answer(), "of a test").unwrap();
         fs::write(cassette.place(&Cassette::key(&request("a"))), "{").unwrap();
         assert!(matches!(cassette.find(&request("a")), Err(CassetteError::Broken { .. })));
     }

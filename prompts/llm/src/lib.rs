@@ -34,7 +34,7 @@ mod client_tests;
 #[cfg(test)]
 mod server;
 
-pub use cassette::{Cassette, CassetteError};
+pub use cassette::{Cassette, CassetteError, Nearest};
 pub use chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
 pub use client::{ChatClient, ClientConfig};
 pub use dialect::{Dialect, Learned, Rung, UnknownName, Wire};

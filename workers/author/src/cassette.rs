@@ -1,7 +1,7 @@
 //! Recorded exchanges as author, and the recorder that makes them.
 
 use async_trait::async_trait;
-use socrates_llm::{Cassette, ChatAnswer, ChatRequest, Finish};
+use socrates_llm::{Cassette, ChatAnswer, ChatRequest, Finish, Nearest};
 use socrates_model::FaultCode;
 use socrates_prompts::{Image, Prompt, Question, Style};
 
@@ -51,10 +51,7 @@ impl Author for Replay {
             return Ok(said(answer, prompt, self.style));
         }
         let Some(other) = &self.other else {
-            let near = self.cassette.nearest(&request).map_or_else(String::new, |(key, differs)| {
-                let key: String = key.chars().take(12).collect();
-                format!("; the nearest, {key}, differs in {}", differs.join(", "))
-            });
+            let near = self.cassette.nearest(&request).map(|near| told(&near, &prompt.template.id)).unwrap_or_default();
             return Err(AskError::new(
                 FaultCode::JRequest,
                 format!(
@@ -70,7 +67,7 @@ impl Author for Replay {
         };
         let answer = other.ask(question).await?;
         if other.name() != socrates_offline::NAME {
-            keep(&self.cassette, &request, &answer)?;
+            keep(&self.cassette, &request, &answer, &prompt.template.id)?;
         }
         Ok(answer)
     }
@@ -102,8 +99,8 @@ impl<A: Author> Recorder<A> {
 impl<A: Author> Author for Recorder<A> {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let answer = self.inner.ask(question).await?;
-        let (request, _) = recorded_as(question, self.style)?;
-        keep(&self.cassette, &request, &answer)?;
+        let (request, prompt) = recorded_as(question, self.style)?;
+        keep(&self.cassette, &request, &answer, &prompt.template.id)?;
         Ok(answer)
     }
 
@@ -112,7 +109,25 @@ impl<A: Author> Author for Recorder<A> {
     }
 }
 
-fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer) -> Result<(), AskError> {
+/// What is said of the nearest recording; where its rules are those of another version of the program, which.
+fn told(near: &Nearest, template: &str) -> String {
+    let key: String = near.key.chars().take(12).collect();
+    let differs = format!("; the nearest, {key}, differs in {}", near.differs.join(", "));
+    // The second turn holds the rules, which depend on nothing but the version and the style.
+    if !near.differs.iter().any(|name| name == "turns[1]") {
+        return differs;
+    }
+    let version = match near.note.as_str() {
+        "" => "an earlier version".to_owned(),
+        note if note == template => return format!("{differs} (the rules of another style)"),
+        note => format!("the version that asks with `{note}`"),
+    };
+    format!(
+        "{differs}; it was recorded by {version}, this program asks with `{template}`: replay it with that version, or record anew"
+    )
+}
+
+fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer, template: &str) -> Result<(), AskError> {
     let kept = ChatAnswer {
         text: answer.text.clone(),
         finish: if answer.cut { Finish::Cut } else { Finish::Stop },
@@ -124,7 +139,7 @@ fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer) -> Result<(
         steps: answer.how.steps.clone(),
         limits: answer.how.limits,
     };
-    cassette.keep(request, &kept).map_err(|error| unusable(&error))
+    cassette.keep(request, &kept, template).map_err(|error| unusable(&error))
 }
 
 #[cfg(test)]
@@ -149,6 +164,24 @@ mod tests {
         assert_eq!(missing.code, FaultCode::JRequest);
         assert!(missing.message.contains("holds 1 exchanges; the nearest, "), "{}", missing.message);
         assert!(missing.message.contains("differs in seed."), "{}", missing.message);
+    }
+
+    #[tokio::test]
+    async fn a_recording_of_another_version_says_which_version_it_needs() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().to_str().unwrap();
+        let asked = question(Stage::Proposal);
+        let (mut request, prompt) = recorded_as(&asked, Style::default()).unwrap();
+        request.turns[1].text.push_str("\nAn older rule.");
+        let answer = Answer { text: "{}".to_owned(), ..Answer::default() };
+        for (note, words) in
+            [("proposal/1", "by the version that asks with `proposal/1`"), ("", "by an earlier version")]
+        {
+            keep(&Cassette::at(folder), &request, &answer, note).unwrap();
+            let missing = Replay::new(folder, Style::default()).ask(&asked).await.unwrap_err().message;
+            assert!(missing.contains(words), "{missing}");
+            assert!(missing.contains(&format!("this program asks with `{}`", prompt.template.id)), "{missing}");
+        }
     }
 
     #[tokio::test]
