@@ -35,7 +35,7 @@ pub(crate) fn graph(location: &Location) -> String {
     );
     for node in graph.nodes() {
         let kind = letters.get(node.kind.as_str()).map_or("", String::as_str);
-        text.push_str(&format!("{} {kind} {},{}", node.id, metres(node.at.x), metres(node.at.y)));
+        text.push_str(&format!("{} {kind} {},{}", node.id, meters(node.at.x), meters(node.at.y)));
         for other in graph.neighbors(&node.id) {
             let way = graph.edge(&node.id, other).map_or("", |edge| edge.kind.as_str());
             let ends = [Some(node.kind.as_str()), graph.node(other).map(|node| node.kind.as_str())];
@@ -48,7 +48,7 @@ pub(crate) fn graph(location: &Location) -> String {
 }
 
 /// A coordinate with one decimal, which is left out where it is none: nodes may lie within a metre of each other.
-fn metres(value: f64) -> String {
+fn meters(value: f64) -> String {
     let text = format!("{value:.1}");
     let text = text.strip_suffix(".0").unwrap_or(&text);
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn coordinates_have_a_decimal_where_they_need_one() {
-        assert_eq!([2.0, -0.04, 3.26, -1.5, 12.96].map(metres), ["2", "0", "3.3", "-1.5", "13"]);
+        assert_eq!([2.0, -0.04, 3.26, -1.5, 12.96].map(meters), ["2", "0", "3.3", "-1.5", "13"]);
     }
 
     #[test]
