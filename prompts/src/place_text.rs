@@ -47,7 +47,7 @@ pub(crate) fn graph(location: &Location) -> String {
     text
 }
 
-/// A coordinate with one decimal, which is left out where it is none: nodes may lie within a metre of each other.
+/// A coordinate with one decimal, which is left out where it is none: nodes may lie within a meter of each other.
 fn meters(value: f64) -> String {
     let text = format!("{value:.1}");
     let text = text.strip_suffix(".0").unwrap_or(&text);
