@@ -7,6 +7,7 @@ use std::process::{Child, Command};
 
 use socrates_tests::program::{children, poll, signal, start_typed};
 
+use super::network::Network;
 use crate::PROGRAM;
 
 /// Length of a lease, ms: short, so that what is lost comes back while the test looks.
@@ -78,7 +79,8 @@ impl Drop for Disk {
 /// A process of the cluster, by its place: the newest that was started there.
 struct Post {
     name: &'static str,
-    args: Vec<String>,
+    /// The program and what it is told.
+    line: Vec<String>,
     child: Child,
     starts: u32,
 }
@@ -101,11 +103,13 @@ pub(super) struct Cluster {
     /// Where clients connect.
     pub(super) endpoint: String,
     address: String,
+    /// The network of the second machine, where it has one of its own.
+    pub(super) network: Option<Network>,
 }
 
 impl Cluster {
-    /// Starts everything. `clock`: the library of a false clock, where there is one.
-    pub(super) fn start(folder: &Path, clock: Option<&Path>) -> Self {
+    /// Starts everything. `clock`: the library of a false clock, where there is one; `network`: that of the second machine.
+    pub(super) fn start(folder: &Path, clock: Option<&Path>, network: Option<Network>) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let address = format!("127.0.0.1:{port}");
         let endpoint = format!("tcp/{address}");
@@ -126,36 +130,47 @@ impl Cluster {
             fell: 0,
             endpoint: endpoint.clone(),
             address,
+            network,
         };
         let lease = format!("orchestrator.lease_ms={LEASE_MS}");
         let dir = |name: &str| folder.join(name).display().to_string();
         let owned = |parts: &[&[&str]]| parts.concat().into_iter().map(str::to_owned).collect::<Vec<String>>();
         let up = ["cluster", "up", "--durable", "process", "--dir"];
-        cluster.post("router", owned(&[&up, &[&dir("router"), "--listen", &endpoint, "--namespace", "router"]]));
+        let (listen, far, enter) = match &cluster.network {
+            Some(network) => {
+                (format!("tcp/0.0.0.0:{port}"), format!("tcp/{}:{port}", network.address), network.enter())
+            }
+            None => (endpoint.clone(), endpoint.clone(), Vec::new()),
+        };
+        let router = ["--listen", &listen, "--insecure", "--namespace", "router"];
+        cluster.post("router", &[], owned(&[&up, &[&dir("router")], &router]));
         assert!(poll(|| cluster.listens().then_some(())).is_some(), "nobody listens");
         let beats =
             ["--set", &lease, "--set", "orchestrator.beat_ms=400", "--set", "log.filter=warn,socrates_app=info"];
-        cluster.post("orchestrator", owned(&[&up, &[&dir("jobs"), "--connect", &endpoint], &beats]));
-        for name in ["crew-0", "crew-1"] {
+        cluster.post("orchestrator", &[], owned(&[&up, &[&dir("jobs"), "--connect", &endpoint], &beats]));
+        for (name, enter, endpoint) in [("crew-0", &[][..], &endpoint), ("crew-1", &enter, &far)] {
             let own = dir(name);
-            let work = ["cluster", "work", "--dir", &own, "--connect", &endpoint, "--slots", "1"];
+            let work = ["cluster", "work", "--dir", &own, "--connect", endpoint, "--slots", "1"];
             // Every attempt says when it begins.
             let log = ["--set", "log.filter=warn,socrates_kit::attempt=debug"];
-            cluster.post(name, owned(&[&work, &log]));
+            cluster.post(name, enter, owned(&[&work, &log]));
         }
         cluster
     }
 
-    fn spawn(&self, name: &str, args: &[String], number: u32) -> Child {
+    fn spawn(&self, name: &str, line: &[String], number: u32) -> Child {
+        let (program, args) = line.split_first().unwrap();
         let args: Vec<&str> = args.iter().map(String::as_str).collect();
         let variables: Vec<(&str, &str)> =
             self.variables.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
-        start_typed(PROGRAM, &args, &self.folder, &format!("{name}.{number}"), "", &variables).unwrap()
+        start_typed(program, &args, &self.folder, &format!("{name}.{number}"), "", &variables).unwrap()
     }
 
-    fn post(&mut self, name: &'static str, args: Vec<String>) {
-        let child = self.spawn(name, &args, 0);
-        self.posts.push(Post { name, args, child, starts: 1 });
+    /// `enter`: what the command begins with that leads into the network of its machine.
+    fn post(&mut self, name: &'static str, enter: &[String], args: Vec<String>) {
+        let line = [enter, &[PROGRAM.to_owned()], &args].concat();
+        let child = self.spawn(name, &line, 0);
+        self.posts.push(Post { name, line, child, starts: 1 });
     }
 
     fn index(place: Place) -> usize {
@@ -179,7 +194,7 @@ impl Cluster {
 
     fn restart(&mut self, index: usize) {
         let number = self.posts[index].starts;
-        let child = self.spawn(self.posts[index].name, &self.posts[index].args, number);
+        let child = self.spawn(self.posts[index].name, &self.posts[index].line, number);
         self.posts[index].child = child;
         self.posts[index].starts += 1;
     }

@@ -71,8 +71,8 @@ fn recovery(struck: &Struck, log: &Log) -> Option<Duration> {
     let stage = format!("/{}/", fault.stage);
     let after = |one: &&Begun| one.at > struck.at;
     match fault.kind {
-        Kind::KillWorker | Kind::FreezeWorker | Kind::KillCrew => {
-            let all = fault.kind == Kind::KillCrew;
+        Kind::KillWorker | Kind::FreezeWorker | Kind::KillCrew | Kind::Partition => {
+            let all = matches!(fault.kind, Kind::KillCrew | Kind::Partition);
             let mut last: BTreeMap<&str, &Begun> = BTreeMap::new();
             for one in begun.iter().filter(|one| one.at <= struck.at && (all || one.job.contains(&stage))) {
                 last.insert(&one.job, one);
@@ -90,7 +90,7 @@ fn recovery(struck: &Struck, log: &Log) -> Option<Duration> {
         Kind::KillRouter | Kind::FreezeOrchestrator | Kind::FullDisk => {
             begun.iter().find(|one| one.at > struck.over).map(|one| one.at - struck.at)
         }
-        Kind::ClockJump => None,
+        Kind::ClockJump | Kind::Loss => None,
     }
 }
 

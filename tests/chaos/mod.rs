@@ -4,6 +4,7 @@
 mod cluster;
 mod figures;
 mod nemesis;
+mod network;
 mod schedule;
 mod storm;
 

@@ -6,10 +6,13 @@ use socrates_tests::program::{poll, signal};
 
 use super::cluster::{Cluster, Disk, Place};
 use super::figures::Log;
+use super::network::{Network, Trouble};
 use super::schedule::{Fault, Kind};
 
 /// How long a worker that is to be struck at work may be idle.
 const IDLE: Duration = Duration::from_secs(2);
+/// Packets of a hundred that are lost each way, where they are.
+const LOST: u32 = 20;
 
 /// A fault that was inflicted.
 pub(super) struct Struck {
@@ -76,12 +79,26 @@ impl Storm {
         signal(pid, "CONT").unwrap() && poll(|| (doing(pid)? != 'T').then_some(())).is_some() && stopped
     }
 
+    /// Troubles the packets of the second machine for a while; whether the kernel dropped some.
+    fn packets(&mut self, trouble: Trouble, ms: u64) -> bool {
+        let begun = self.cluster.network.as_ref().is_some_and(|network| network.begin(trouble));
+        self.last(ms);
+        let dropped = self.cluster.network.as_ref().and_then(Network::end);
+        begun && dropped.is_some_and(|packets| packets > 0)
+    }
+
     /// Inflicts a fault.
     pub(super) fn inflict(&mut self, fault: Fault) -> Struck {
         let struck = match fault.kind {
             Kind::KillWorker | Kind::FreezeWorker => Some(self.worker(fault)),
             Kind::FreezeOrchestrator => Some(self.cluster.pid(Place::Orchestrator)),
-            Kind::KillCrew | Kind::KillOrchestrator | Kind::KillRouter | Kind::FullDisk | Kind::ClockJump => None,
+            Kind::KillCrew
+            | Kind::KillOrchestrator
+            | Kind::KillRouter
+            | Kind::FullDisk
+            | Kind::ClockJump
+            | Kind::Partition
+            | Kind::Loss => None,
         };
         let at = Instant::now();
         let fired = match (fault.kind, struck) {
@@ -99,6 +116,8 @@ impl Storm {
                 self.off_s += fault.jump_s;
                 self.cluster.set_clock(self.off_s)
             }
+            (Kind::Partition, None) => self.packets(Trouble::Cut, fault.lasts_ms),
+            (Kind::Loss, None) => self.packets(Trouble::Loses(LOST), fault.lasts_ms),
             (_, None) => {
                 let full = self.disk.as_ref().is_some_and(Disk::fill);
                 self.last(fault.lasts_ms);

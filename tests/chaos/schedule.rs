@@ -25,11 +25,15 @@ pub(super) enum Kind {
     FullDisk,
     /// The clock of the wall jumps.
     ClockJump,
+    /// No packet gets from or to one machine for longer than its leases.
+    Partition,
+    /// Packets from and to one machine are lost, for a while.
+    Loss,
 }
 
 impl Kind {
     /// Every kind, and its weight among the faults that are drawn.
-    pub(super) const ALL: [(Self, u64); 8] = [
+    pub(super) const ALL: [(Self, u64); 10] = [
         (Self::KillWorker, 40),
         (Self::KillCrew, 6),
         (Self::KillOrchestrator, 14),
@@ -38,6 +42,8 @@ impl Kind {
         (Self::FreezeOrchestrator, 6),
         (Self::FullDisk, 4),
         (Self::ClockJump, 8),
+        (Self::Partition, 5),
+        (Self::Loss, 5),
     ];
 
     /// Its name in schedules and tables.
@@ -51,6 +57,8 @@ impl Kind {
             Self::FreezeOrchestrator => "freeze orchestrator",
             Self::FullDisk => "disk full",
             Self::ClockJump => "clock jump",
+            Self::Partition => "cut off a machine",
+            Self::Loss => "lose packets of a machine",
         }
     }
 
@@ -61,6 +69,9 @@ impl Kind {
             Self::FreezeWorker => (2_500, 5_000),
             Self::FreezeOrchestrator => (500, 3_500),
             Self::FullDisk => (500, 2_500),
+            // The longest outlast also the link's own lease of 10 s.
+            Self::Partition => (2_500, 12_000),
+            Self::Loss => (2_000, 6_000),
         }
     }
 }
@@ -109,7 +120,8 @@ pub(super) fn draw(seed: u64, count: usize, attempts: u64, kinds: &[(Kind, u64)]
             at: number as u64 * step + throw("at", number, step) + 1,
             kind,
             stage: STAGES[usize::try_from(throw("stage", number, STAGES.len() as u64)).unwrap_or(0)],
-            crew: usize::from(throw("crew", number, 2) == 1),
+            // The second machine has a network of its own.
+            crew: usize::from(throw("crew", number, 2) == 1 || matches!(kind, Kind::Partition | Kind::Loss)),
             lasts_ms: least + throw("lasts", number, most - least + 1),
             jump_s: if throw("back", number, 2) == 0 { jump } else { -jump },
         }

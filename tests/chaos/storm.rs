@@ -14,6 +14,7 @@ use super::REQUEST;
 use super::cluster::{Cluster, Disk, false_clock};
 use super::figures::{Log, table};
 use super::nemesis::{Storm, Struck};
+use super::network::Network;
 use super::schedule::{Kind, STAGES, draw, told};
 use crate::socrates;
 
@@ -73,6 +74,7 @@ fn strike(folder: &Path, storm: &mut Storm, seed: u64, faults: usize, count: u64
     let has = |kind: Kind| match kind {
         Kind::FullDisk => storm.disk.is_some(),
         Kind::ClockJump => storm.cluster.has_false_clock(),
+        Kind::Partition | Kind::Loss => storm.cluster.network.is_some(),
         Kind::KillWorker
         | Kind::KillCrew
         | Kind::KillOrchestrator
@@ -115,7 +117,8 @@ fn nothing_is_lost_and_nothing_doubled_in_a_storm_of_faults() {
     std::fs::write(at.join("batch.toml"), REQUEST).unwrap();
     let disk = skip::elsewhere(Disk::mount(&at.join("jobs"), 64 + count / 2));
     let clock = skip::installed(false_clock());
-    let cluster = Cluster::start(at, clock.as_deref());
+    let network = skip::elsewhere(Network::make());
+    let cluster = Cluster::start(at, clock.as_deref(), network);
     let (variants, endpoint) = (count.to_string(), cluster.endpoint.clone());
     let mut storm = Storm { cluster, disk, log: Log::default(), off_s: 0 };
     let batch = ["batch.toml", "--variants", &variants, "--repeats", "--require", "any"];

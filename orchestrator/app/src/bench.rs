@@ -3,7 +3,7 @@
 
 mod jobs;
 mod library;
-mod machine;
+pub(crate) mod machine;
 
 pub use jobs::{JobsOptions, idle};
 

@@ -7,6 +7,7 @@ use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, Work
 use socrates_link::rules::Role;
 use socrates_link::{Bus, Mode, SECURE, ZenohConfig};
 use socrates_model::job::Stage;
+use socrates_orchestrator::Policy;
 pub use socrates_store::Durability;
 use socrates_store::StoreError;
 use socrates_stream::{ShmConfig, ShmHost};
@@ -64,6 +65,8 @@ pub struct OrchestratorOptions {
     pub tied: bool,
     /// No worker of before is alive: what they held is handed out again at once.
     pub alone: bool,
+    /// Rules of an experiment, instead of those of the configuration.
+    pub rules: Option<Policy>,
 }
 
 /// Version of the stages' code; results of another version are not reused.
@@ -258,6 +261,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
         alone: options.alone,
         waits: !options.tied,
         metrics,
+        rules: options.rules.clone(),
     };
     let served = orchestrate::serve(settings, bus.clone(), leave(options.tied)).await;
     bus.close().await;

@@ -6,20 +6,21 @@
 //!  └────────────────────────────────────────────────────────────────────────┴──────────┘
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
+use socrates_model::Digest;
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquired, BeatReply, BeatVerdict, Grant, NoWork, Priority, Recorded, ScenarioSpec, Submit};
-use socrates_model::{Digest, PlannerName, Role, ScenarioId};
+use socrates_model::wire::{Acquired, BeatReply, BeatVerdict, Grant, NoWork, Priority, Recorded, Submit};
 use socrates_orchestrator::{Answer, Event};
 
+use crate::asked::{BATCH, asked, of_authors};
 use crate::draws::At;
 use crate::fate::{Crash, Fates, Outcome};
 use crate::head::{Head, Said, Step};
 use crate::heap::{Happening, Heap};
 use crate::kind::Kind;
 use crate::ledger::{AttemptRow, Ledger};
-use crate::spec::{AUTHORED, Cell, Spec};
+use crate::spec::{Cell, Spec};
 use crate::worker::{self, Message, Work, Worker};
 
 /// Virtual time at which the batch is submitted, ms.
@@ -30,8 +31,6 @@ const MOST_HAPPENINGS: u64 = 50_000;
 const MOST_MS: u64 = 8_640_000_000;
 /// The checker looks at the state after so many things that happened.
 const CHECKED_EVERY: u64 = 2_003;
-/// What the jobs say of their author: rates are kept by its server.
-const AUTHOR: &str = "openai:simulated";
 
 /// Plays a batch of a cell to its end.
 #[must_use]
@@ -55,10 +54,9 @@ pub(crate) fn play(spec: &Spec, cell: &Cell, batch: u32, step: Step<'_>) -> Ledg
     };
     played.submit(cell, batch);
     played.run();
-    let asked: Vec<Stage> = AUTHORED.into_iter().filter(|stage| cell.workload.asks.of(*stage).is_some()).collect();
     let complaints = [played.head.checked(), played.head.checked_rows(played.now)].concat();
     played.ledger.complained(&complaints);
-    played.ledger.close(&played.head.rows, &asked);
+    played.ledger.close(&played.head.rows, &of_authors(cell));
     played.ledger
 }
 
@@ -85,29 +83,12 @@ impl Batch<'_> {
     }
 
     fn submit(&mut self, cell: &Cell, batch: u32) {
-        let given = Role::PINNED.into_iter().zip(AUTHORED).filter(|(_, stage)| cell.workload.asks.of(*stage).is_none());
-        let pinned: BTreeMap<Role, Digest> =
-            given.map(|(role, _)| (role, Digest::of(role.name().as_bytes()))).collect();
-        let settings = [("author", AUTHOR), ("cache", "off")].map(|(key, value)| (key.to_owned(), value.to_owned()));
         let mut scenarios = Vec::new();
-        for number in self.spec.scenarios_of(batch) {
-            let Ok(id) = ScenarioId::new(format!("s{number:07}")) else { continue };
-            self.ledger.submitted(id.clone(), number);
-            scenarios.push(ScenarioSpec {
-                request: Digest::of(id.as_str().as_bytes()),
-                id,
-                location: Digest::of(b"location"),
-                reading: Digest::of(b"reading"),
-                seed: u64::from(number),
-                planners: vec![PlannerName::reference()],
-                run_seeds: vec![1],
-                pinned: pinned.clone(),
-                settings: settings.clone().into(),
-                review: false,
-                order: None,
-            });
+        for (number, scenario) in asked(self.spec, cell, batch) {
+            self.ledger.submitted(scenario.id.clone(), number);
+            scenarios.push(scenario);
         }
-        let submit = Submit::new("experiment", Priority::Normal, scenarios);
+        let submit = Submit::new(BATCH, Priority::Normal, scenarios);
         let said = self.head.takes(|to| Event::Submit { submit, to }, self.now, None);
         self.tell(said, None, 0);
         for place in 0..self.workers.len() {
@@ -226,8 +207,16 @@ impl Batch<'_> {
         let Message::Report(report) = message else { return (None, false) };
         let work = self.workers.get(from).and_then(|worker| worker.work.as_ref());
         let Some(work) = work.filter(|work| work.grant.fence == report.fence) else { return (None, false) };
-        let struck = work.fate.crash.is_some() || work.fate.slow;
-        if struck && self.met.insert(report.fence) { (work.fate.crash, work.fate.slow) } else { (None, false) }
+        let (crash, slow) = (work.fate.crash, work.fate.slow);
+        if !(crash.is_some() || slow) || !self.met.insert(report.fence) {
+            return (None, false);
+        }
+        for (kind, strikes) in [(Kind::OrchestratorKill, crash.is_some()), (Kind::SlowStore, slow)] {
+            if strikes {
+                self.ledger.hit(kind);
+            }
+        }
+        (crash, slow)
     }
 
     /// Tells what a step said, after its commit.
@@ -323,7 +312,8 @@ impl Batch<'_> {
         let key = grant.spec.key.clone();
         let Some(scenario) = self.ledger.number(&key.scenario) else { return };
         let at = At { scenario, stage: key.stage, revision: key.revision, attempt: grant.attempt };
-        let fate = self.fates.of(&grant, at, self.since());
+        let fate = self.fates.of(&grant.spec, at, self.since());
+        self.ledger.due(self.fates.due(&fate));
         let row = AttemptRow {
             at,
             begun_ms: self.since(),
@@ -335,10 +325,17 @@ impl Batch<'_> {
         let place = self.ledger.begun(&key, row);
         let (now, since, cut_ms) = (self.now, self.since(), self.spec.times_ms.cut);
         let Some(worker) = self.workers.get_mut(of) else { return };
-        let (life, fence, works_ms, dies_ms) = (worker.life, grant.fence, fate.works_ms, fate.dies_ms);
-        if fate.cut {
-            worker.cut_until = now.saturating_add(cut_ms);
-            self.ledger.struck(&key, Kind::Partition, since);
+        // One that is stopped does nothing meanwhile.
+        let still_ms = if fate.frozen { cut_ms } else { 0 };
+        let later = |ms: u64| ms.saturating_add(still_ms);
+        let (life, fence, works_ms, dies_ms) =
+            (worker.life, grant.fence, later(fate.works_ms), fate.dies_ms.map(later));
+        for kind in [(Kind::Partition, fate.cut), (Kind::WorkerFreeze, fate.frozen)] {
+            if kind.1 {
+                worker.cut_until = now.saturating_add(cut_ms);
+                self.ledger.struck(&key, kind.0, since);
+                self.ledger.hit(kind.0);
+            }
         }
         worker.work = Some(Work { grant, fate, place, reported: false });
         match dies_ms {
@@ -363,9 +360,12 @@ impl Batch<'_> {
         };
         work.reported = true;
         let key = &work.grant.spec.key;
-        self.ledger.answered(key, &work.fate.outcome);
+        self.ledger.answered(key, work.fate.outcome.answered());
         if let Some(kind) = work.fate.outcome.kind() {
             self.ledger.struck(key, kind, since);
+            if self.fates.cell.strike.kinds.contains(&kind) {
+                self.ledger.hit(kind);
+            }
         } else if work.fate.slow {
             self.ledger.struck(key, Kind::SlowStore, since);
         }
@@ -389,6 +389,7 @@ impl Batch<'_> {
         if let Some(work) = worker.die() {
             self.ledger.stopped(work.place, "killed", since);
             self.ledger.struck(&work.grant.spec.key, Kind::WorkerKill, since);
+            self.ledger.hit(Kind::WorkerKill);
         }
         self.plan(self.spec.times_ms.token, Happening::Gone(instance));
         self.plan(self.spec.times_ms.restart, Happening::Starts(of));

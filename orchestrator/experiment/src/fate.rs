@@ -12,8 +12,7 @@
 //! v (√ρ + (1 - √ρ) v)^k + (1 - v) ((1 - √ρ) v)^k, which is v^k where ρ is 0: [`all_wrong`].
 
 use socrates_model::fault::{FailureClass, Fault, FaultCode};
-use socrates_model::job::Stage;
-use socrates_model::wire::Grant;
+use socrates_model::job::{JobSpec, Stage};
 use socrates_model::{Where, seeds};
 
 use crate::draws::{At, part};
@@ -26,7 +25,7 @@ const VIOLATIONS: usize = 1_000;
 
 /// What comes of an attempt, if its worker lives to report it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Outcome {
+pub enum Outcome {
     /// A right answer, or work done.
     Right,
     /// A wrong answer that no check finds.
@@ -45,7 +44,8 @@ pub(crate) enum Outcome {
 
 impl Outcome {
     /// Word in tables.
-    pub(crate) const fn word(&self) -> &'static str {
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
         match self {
             Self::Right => "right",
             Self::Unseen => "unseen",
@@ -58,7 +58,8 @@ impl Outcome {
     }
 
     /// The class and the fault with which it is reported; none for a success.
-    pub(crate) fn failure(&self) -> Option<(FailureClass, Fault)> {
+    #[must_use]
+    pub fn failure(&self) -> Option<(FailureClass, Fault)> {
         let fault = |code: FaultCode, text: &'static str| Fault::new(code, Where::default(), text);
         match self {
             Self::Right | Self::Unseen => None,
@@ -73,7 +74,8 @@ impl Outcome {
     }
 
     /// Whether an answer came, and whether it was right.
-    pub(crate) const fn answered(&self) -> Option<bool> {
+    #[must_use]
+    pub const fn answered(&self) -> Option<bool> {
         match self {
             Self::Right => Some(true),
             Self::Unseen | Self::Violated(_) | Self::Malformed => Some(false),
@@ -82,7 +84,8 @@ impl Outcome {
     }
 
     /// The kind of fault that it is.
-    pub(crate) const fn kind(&self) -> Option<Kind> {
+    #[must_use]
+    pub const fn kind(&self) -> Option<Kind> {
         match self {
             Self::Right | Self::Unseen => None,
             Self::Violated(_) => Some(Kind::SemanticViolation),
@@ -96,7 +99,7 @@ impl Outcome {
 
 /// When an orchestrator dies that records a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Crash {
+pub enum Crash {
     /// Nothing of the step is saved.
     BeforeCommit,
     /// Everything is saved, nothing answered.
@@ -105,30 +108,32 @@ pub(crate) enum Crash {
 
 /// The fate of one attempt.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Fate {
+pub struct Fate {
     /// What comes of it.
-    pub(crate) outcome: Outcome,
+    pub outcome: Outcome,
     /// Working time until it is reported, ms.
-    pub(crate) works_ms: u64,
+    pub works_ms: u64,
     /// Working time after which the worker dies.
-    pub(crate) dies_ms: Option<u64>,
+    pub dies_ms: Option<u64>,
     /// Whether the worker is cut off from the beginning of the attempt on.
-    pub(crate) cut: bool,
+    pub cut: bool,
     /// Whether the orchestrator dies at the report.
-    pub(crate) crash: Option<Crash>,
+    pub crash: Option<Crash>,
+    /// Whether the worker is stopped from the beginning of the attempt on, for `times_ms.cut`.
+    pub frozen: bool,
     /// Whether the report is committed slowly.
-    pub(crate) slow: bool,
+    pub slow: bool,
     /// Tokens in and out, as far as they are asked for.
-    pub(crate) tokens: [u64; 2],
+    pub tokens: [u64; 2],
 }
 
 /// What decides the fates of a cell's attempts.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fates<'a> {
+pub struct Fates<'a> {
     /// Specification.
-    pub(crate) spec: &'a Spec,
+    pub spec: &'a Spec,
     /// Cell.
-    pub(crate) cell: &'a Cell,
+    pub cell: &'a Cell,
 }
 
 impl Fates<'_> {
@@ -141,13 +146,14 @@ impl Fates<'_> {
             && at.happens(self.spec.seed, kind.word(), self.cell.rate)
     }
 
-    /// The fate of the attempt of this grant.
-    pub(crate) fn of(&self, grant: &Grant, at: At, begun_ms: u64) -> Fate {
+    /// The fate of an attempt at this job, which begins at this time.
+    #[must_use]
+    pub fn of(&self, job: &JobSpec, at: At, begun_ms: u64) -> Fate {
         let (seed, times) = (self.spec.seed, &self.spec.times_ms);
         let strikes = |kind: Kind| self.strikes(kind, at, begun_ms);
         let whole_ms = self.spec.durations.of(at.stage).of(seed, at);
         let some_ms = part(whole_ms, at.draw(seed, "moment")).max(1);
-        let told = self.told(grant);
+        let told = self.told(job);
         let [asked, answered] = self.spec.tokens.of(at.stage);
         let asked = if told.is_some() { asked.saturating_add(self.spec.tokens.refused) } else { asked };
         let (outcome, works_ms, tokens) = if strikes(Kind::LlmTimeout) {
@@ -170,15 +176,29 @@ impl Fates<'_> {
             cut: strikes(Kind::Partition),
             crash: strikes(Kind::OrchestratorKill)
                 .then(|| if at.draw(seed, "crash") < 0.5 { Crash::BeforeCommit } else { Crash::AfterCommit }),
+            frozen: strikes(Kind::WorkerFreeze),
             slow: strikes(Kind::SlowStore),
             tokens: if dies_ms.is_some() { [tokens[0], 0] } else { tokens },
         }
     }
 
     /// The violation that the author is told of, where it has its refused answer before it.
-    fn told<'g>(&self, grant: &'g Grant) -> Option<&'g Fault> {
-        let there = grant.spec.refused.is_some() && self.cell.policy.told != Told::None;
-        grant.spec.feedback.first().filter(|_| there)
+    fn told<'g>(&self, job: &'g JobSpec) -> Option<&'g Fault> {
+        let there = job.refused.is_some() && self.cell.policy.told != Told::None;
+        job.feedback.first().filter(|_| there)
+    }
+
+    /// The kinds of the cell's faults that this fate has: what is to strike its attempt.
+    pub fn due(&self, fate: &Fate) -> impl Iterator<Item = Kind> {
+        let has = [
+            (Kind::WorkerKill, fate.dies_ms.is_some()),
+            (Kind::Partition, fate.cut),
+            (Kind::WorkerFreeze, fate.frozen),
+            (Kind::OrchestratorKill, fate.crash.is_some()),
+            (Kind::SlowStore, fate.slow),
+        ];
+        let of_author = fate.outcome.kind().filter(|kind| self.cell.strike.kinds.contains(kind));
+        has.into_iter().filter(|(_, has)| *has).map(|(kind, _)| kind).chain(of_author)
     }
 
     /// The answer of an author.

@@ -45,11 +45,33 @@ kinds! {
     LlmError "llm_error" true "The author's server fails.";
     Malformed "malformed" true "The answer cannot be parsed.";
     SemanticViolation "semantic_violation" true "The answer breaks a rule of its stage.";
+    WorkerFreeze "worker_freeze" false "The worker is stopped for a while, and then goes on with what it held.";
     OrchestratorKill "orchestrator_kill" false "The orchestrator dies while it records the report, before or after its commit, and is started again on what was saved.";
     SlowStore "slow_store" false "The commit of the report takes long; nothing else is answered meanwhile.";
 }
 
 impl Kind {
+    /// Why it cannot be done to real processes, and what can be done instead; none where it can.
+    #[must_use]
+    pub const fn lacks_processes(self) -> Option<&'static str> {
+        match self {
+            Self::Partition => {
+                Some("processes of one machine cannot be cut off; `worker_freeze` silences a worker for as long")
+            }
+            Self::SlowStore => {
+                Some("the store of a process cannot be slowed down; leave it to `level = \"simulator\"`")
+            }
+            Self::WorkerKill
+            | Self::LlmTimeout
+            | Self::Overload
+            | Self::LlmError
+            | Self::Malformed
+            | Self::SemanticViolation
+            | Self::WorkerFreeze
+            | Self::OrchestratorKill => None,
+        }
+    }
+
     /// Whether it can strike an attempt at this stage.
     #[must_use]
     pub const fn strikes(self, stage: Stage) -> bool {
@@ -64,6 +86,6 @@ mod tests {
     #[test]
     fn faults_of_an_author_strike_only_stages_that_ask_one() {
         let at = |stage| Kind::ALL.iter().filter(|kind| kind.strikes(stage)).count();
-        assert_eq!((at(Stage::Paths), at(Stage::Simulation), at(Stage::Scoring)), (9, 4, 4));
+        assert_eq!((at(Stage::Paths), at(Stage::Simulation), at(Stage::Scoring)), (10, 5, 5));
     }
 }

@@ -211,3 +211,17 @@ fn faults_of_a_window_strike_within_it_alone() {
     }
     assert!(struck > 20, "{struck} attempts were struck");
 }
+
+#[test]
+fn a_stage_that_rests_spends_fewer_tries_in_an_outage() {
+    let spec = spec(json!({
+        "title": "rest", "scenarios": 200, "policies": ["immediate", "resting"], "tries": [8],
+        "policy": { "resting": { "like": "immediate", "circuit_percent": 20, "circuit_ms": 10_000 } },
+        "fault": [{ "kinds": ["llm_error"], "rates": [1.0], "from_ms": 30_000, "to_ms": 60_000 }],
+    }));
+    let results = played(&spec);
+    let struck = |number: usize| results[number].1.iter().filter(|row| row.outcome == "error").count();
+    let realised = |number: usize| results[number].0.figures().successes;
+    assert!(struck(1) * 3 < struck(0), "{} attempts failed, {} with rests", struck(0), struck(1));
+    assert!(realised(1) > realised(0), "{} realised, {} with rests", realised(0), realised(1));
+}

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use socrates_model::fault::FailureClass;
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::Recorded;
 use socrates_model::{ScenarioEnd, ScenarioId, Verdict};
 
 use crate::draws::At;
-use crate::fate::Outcome;
 use crate::kind::Kind;
 use crate::rows::Rows;
 use crate::spec::AUTHORED;
@@ -50,6 +50,17 @@ pub struct ScenarioRow {
     pub jobs: u64,
     /// Tokens in and out.
     pub tokens: [u64; 2],
+    /// Stage and class of the failure that ended it, where it failed.
+    pub failed: Option<(Stage, FailureClass)>,
+}
+
+/// Faults of a kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Those that were drawn for attempts which began.
+    pub scheduled: u64,
+    /// Those that were seen to strike: the others were too late, for example because another fault had ended the attempt.
+    pub struck: u64,
 }
 
 impl ScenarioRow {
@@ -105,6 +116,8 @@ pub(crate) struct Ledger {
     /// How long it took until a struck job went on, with what struck it, ms.
     pub(crate) recoveries: Vec<(Kind, u64)>,
     pub(crate) safety: Safety,
+    /// What was to strike, and what did.
+    pub(crate) faults: BTreeMap<Kind, Tally>,
     places: BTreeMap<ScenarioId, usize>,
     /// The first answer of each question.
     first: BTreeMap<(usize, Stage), bool>,
@@ -152,6 +165,18 @@ impl Ledger {
         self.attempts.len() - 1
     }
 
+    /// These are to strike an attempt that begins.
+    pub(crate) fn due(&mut self, kinds: impl Iterator<Item = Kind>) {
+        for kind in kinds {
+            self.faults.entry(kind).or_default().scheduled += 1;
+        }
+    }
+
+    /// A fault struck.
+    pub(crate) fn hit(&mut self, kind: Kind) {
+        self.faults.entry(kind).or_default().struck += 1;
+    }
+
     /// Something struck a job; its recovery is measured from now on.
     pub(crate) fn struck(&mut self, key: &JobKey, kind: Kind, now: u64) {
         self.struck.entry(key.clone()).or_insert((now, kind));
@@ -164,10 +189,10 @@ impl Ledger {
         }
     }
 
-    /// An attempt was answered by its author.
-    pub(crate) fn answered(&mut self, key: &JobKey, outcome: &Outcome) {
+    /// An attempt was answered by its author, rightly or not; or not answered.
+    pub(crate) fn answered(&mut self, key: &JobKey, right: Option<bool>) {
         let asked = AUTHORED.contains(&key.stage);
-        if let (true, Some(right), Some(place)) = (asked, outcome.answered(), self.places.get(&key.scenario)) {
+        if let (true, Some(right), Some(place)) = (asked, right, self.places.get(&key.scenario)) {
             self.first.entry((*place, key.stage)).or_insert(right);
         }
     }
@@ -240,6 +265,12 @@ impl Ledger {
         let open = self.places.keys().filter(|id| rows.scenario(id).is_none_or(|row| row.end.is_none())).count();
         self.safety.lost += (gone + open) as u64;
         self.safety.doubled += rows.doubled;
+        let failures = rows.failures();
+        for (id, place) in &self.places {
+            if let Some(row) = self.scenarios.get_mut(*place).filter(|row| row.end == Some(ScenarioEnd::Failed)) {
+                row.failed = failures.get(id).copied();
+            }
+        }
         for (place, row) in self.scenarios.iter_mut().enumerate() {
             row.first_cut = asked.iter().all(|stage| self.first.get(&(place, *stage)) == Some(&true));
         }

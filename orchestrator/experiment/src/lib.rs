@@ -23,6 +23,7 @@ pub mod spec;
 
 mod problems;
 
+mod asked;
 mod fate;
 
 mod heap;
@@ -33,7 +34,10 @@ mod head;
 mod ledger;
 
 mod batch;
+mod observed;
 
+pub mod beside;
+pub mod heat;
 pub mod plots;
 pub mod results;
 pub mod tables;
@@ -43,10 +47,12 @@ mod laws;
 #[cfg(test)]
 mod safety;
 
-pub use fate::all_wrong;
+pub use asked::{BATCH, asked, number, texts};
+pub use fate::{Crash, Fate, Fates, Outcome, all_wrong};
 pub use head::Step;
 pub use kind::Kind;
-pub use ledger::{AttemptRow, Safety, ScenarioRow};
+pub use ledger::{AttemptRow, Safety, ScenarioRow, Tally};
+pub use observed::{Observed, Told};
 pub use problems::checked;
 pub use results::{CellResult, Figures, Limited, Pairing, Played, Unit, limited, play, units};
 pub use spec::{Cell, Spec};

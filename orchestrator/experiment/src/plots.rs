@@ -114,6 +114,7 @@ pub fn plots(spec: &Spec, results: &[CellResult], figures: &[Figures]) -> Vec<Pl
     } else {
         ""
     };
+    let clock = spec.level.clock();
     let mut all = vec![
         plot(
             ("success", format!("Realised scenarios against {by}")),
@@ -131,10 +132,11 @@ pub fn plots(spec: &Spec, results: &[CellResult], figures: &[Figures]) -> Vec<Pl
         plot(
             ("open-by-seconds", "Not yet realised, by time".to_owned()),
             format!(
-                "The same over virtual seconds from the first attempt of a scenario, waiting for workers included, {}. The axis ends where 99.5 % of the realised ones are done.",
+                "The same over {} seconds from the first attempt of a scenario, waiting for workers included, {}. The axis ends where 99.5 % of the realised ones are done.",
+                clock,
                 extreme(spec)
             ),
-            extremes(&done, &open_by_seconds),
+            extremes(&done, &|group, title| open_by_seconds(group, title, clock)),
         ),
         plot(
             ("cost", "What a realised scenario costs".to_owned()),
@@ -152,10 +154,11 @@ pub fn plots(spec: &Spec, results: &[CellResult], figures: &[Figures]) -> Vec<Pl
         plot(
             ("recovery", "Until a struck job went on".to_owned()),
             format!(
-                "Share of faults after which the job was taken up again, or its report recorded, within so many virtual seconds, {}. Waiting for a free worker is part of it.",
+                "Share of faults after which the job was taken up again, or its report recorded, within so many {} seconds, {}. Waiting for a free worker is part of it.",
+                clock,
                 extreme(spec)
             ),
-            extremes(&done, &recovery),
+            extremes(&done, &|group, title| recovery(group, title, clock)),
         ),
     ];
     all.retain(|plot| !plot.panels.is_empty());
@@ -364,7 +367,7 @@ fn open_by_asks(group: &[Done<'_>], title: String) -> Option<Panel> {
     Some(Panel { title, x: axis("questions to authors", 0.0, to), y: shares("not yet realised, %"), lines })
 }
 
-fn open_by_seconds(group: &[Done<'_>], title: String) -> Option<Panel> {
+fn open_by_seconds(group: &[Done<'_>], title: String, clock: &str) -> Option<Panel> {
     let group = with_most_tries(group);
     let rows = group.iter().flat_map(|(result, _)| &result.scenarios).filter(|row| row.succeeded());
     let spans: Vec<f64> = rows.filter_map(|row| row.span_ms()).map(seconds).collect();
@@ -372,7 +375,7 @@ fn open_by_seconds(group: &[Done<'_>], title: String) -> Option<Panel> {
     let lines = by_policy(&group, Join::Steps, &|cells| {
         cells.first().map(|(result, _)| stepped(&result.open_after_s(), to)).unwrap_or_default()
     });
-    Some(Panel { title, x: axis("virtual time, s", 0.0, to), y: shares("not yet realised, %"), lines })
+    Some(Panel { title, x: axis(&format!("{clock} time, s"), 0.0, to), y: shares("not yet realised, %"), lines })
 }
 
 fn cost(group: &[Done<'_>], title: String) -> Option<Panel> {
@@ -388,7 +391,7 @@ fn cost(group: &[Done<'_>], title: String) -> Option<Panel> {
     (most > 0.0).then(|| Panel { title, x, y: shares("realised, %"), lines })
 }
 
-fn recovery(group: &[Done<'_>], title: String) -> Option<Panel> {
+fn recovery(group: &[Done<'_>], title: String, clock: &str) -> Option<Panel> {
     let group = with_most_tries(group);
     let times = |result: &CellResult| -> Vec<f64> {
         // A log axis has no zero: what went on within a hundredth of a second stands at its left end.
@@ -409,6 +412,6 @@ fn recovery(group: &[Done<'_>], title: String) -> Option<Panel> {
         let last = all.last().map(|_| (to, 1.0, None));
         if points.is_empty() { Vec::new() } else { points.into_iter().chain(last).collect() }
     });
-    let x = Axis { log: true, ..axis("virtual time, s (logarithmic)", from, to.max(10.0 * from)) };
+    let x = Axis { log: true, ..axis(&format!("{clock} time, s (logarithmic)"), from, to.max(10.0 * from)) };
     (to > 0.0).then(|| Panel { title, x, y: shares("went on, %"), lines })
 }

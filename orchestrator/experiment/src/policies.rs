@@ -45,6 +45,10 @@ pub struct RetryPolicy {
     pub beat_ms: u64,
     /// How long a worker whose token is gone may still beat, ms.
     pub grace_ms: u64,
+    /// Share of a stage's attempts in a minute, percent, above which passing failures let it rest; 0 never does.
+    pub circuit_percent: u32,
+    /// How long it rests before one attempt is tried, ms.
+    pub circuit_ms: u64,
 }
 
 /// A policy of a specification: another one, and what is different.
@@ -90,6 +94,12 @@ pub struct Tuned {
     /// See [`RetryPolicy::grace_ms`]; at most an hour.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grace_ms: Option<u64>,
+    /// See [`RetryPolicy::circuit_percent`]; 0 to 100.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub circuit_percent: Option<u32>,
+    /// See [`RetryPolicy::circuit_ms`]; 1 to an hour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub circuit_ms: Option<u64>,
 }
 
 /// What a shipped policy does, and how it differs from the plainest one.
@@ -202,6 +212,8 @@ pub fn shipped(name: &str) -> Option<RetryPolicy> {
         lease_ms: usual.lease_ms,
         beat_ms: usual.beat_ms,
         grace_ms: usual.grace_ms,
+        circuit_percent: usual.circuit_percent,
+        circuit_ms: usual.circuit_ms,
     })
 }
 
@@ -229,6 +241,8 @@ impl Tuned {
             lease_ms: self.lease_ms.unwrap_or(base.lease_ms),
             beat_ms: self.beat_ms.unwrap_or(base.beat_ms),
             grace_ms: self.grace_ms.unwrap_or(base.grace_ms),
+            circuit_percent: self.circuit_percent.unwrap_or(base.circuit_percent),
+            circuit_ms: self.circuit_ms.unwrap_or(base.circuit_ms),
         };
         let limits = [
             ("fresh", u64::from(whole.fresh), 0, 20),
@@ -240,6 +254,8 @@ impl Tuned {
             ("lease_ms", whole.lease_ms, 1_000, HOUR_MS),
             ("beat_ms", whole.beat_ms, 100, whole.lease_ms),
             ("grace_ms", whole.grace_ms, 0, HOUR_MS),
+            ("circuit_percent", u64::from(whole.circuit_percent), 0, 100),
+            ("circuit_ms", whole.circuit_ms, 1, HOUR_MS),
         ];
         let wrong = limits.iter().filter(|(_, value, least, most)| value < least || value > most);
         let told: Vec<String> = wrong
@@ -267,6 +283,8 @@ impl RetryPolicy {
             lease_ms: Some(self.lease_ms),
             beat_ms: Some(self.beat_ms),
             grace_ms: Some(self.grace_ms),
+            circuit_percent: Some(self.circuit_percent),
+            circuit_ms: Some(self.circuit_ms),
         }
     }
 
@@ -287,6 +305,8 @@ impl RetryPolicy {
             lease_ms: self.lease_ms,
             beat_ms: self.beat_ms,
             grace_ms: self.grace_ms,
+            circuit_percent: self.circuit_percent,
+            circuit_ms: self.circuit_ms,
             author_deadline_ms: call_ms.saturating_add(AFTER_CALL_MS).max(Policy::default().author_deadline_ms),
             transient_tries: again,
             late_tries: again,

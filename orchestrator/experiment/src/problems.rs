@@ -12,6 +12,10 @@ use crate::spec::{AUTHORED, Level, MOST_SCENARIOS, Spec};
 const MOST_CELLS: usize = 2_000;
 /// Scenarios of a batch at most: the orchestrator takes 200 000 open jobs, of which a scenario has six at most.
 const MOST_BATCH: u32 = 20_000;
+/// Scenarios of an experiment on real processes at most.
+const MOST_ON_PROCESSES: u64 = 20_000;
+/// Worker processes of an experiment at most.
+const MOST_WORKERS: u32 = 64;
 /// Tries at a job at most.
 const MOST_TRIES: u32 = 20;
 
@@ -29,10 +33,7 @@ pub fn checked(spec: Spec) -> Result<Spec, Vec<String>> {
 fn of(spec: &Spec) -> Vec<String> {
     let mut found = Found(Vec::new());
     if spec.level == Level::Processes {
-        found.say(
-            "`level` is `processes`: experiments that kill real processes are not there yet; allowed: simulator"
-                .to_owned(),
-        );
+        on_processes(spec, &mut found);
     }
     factors(spec, &mut found);
     settings(spec, &mut found);
@@ -69,6 +70,29 @@ fn of(spec: &Spec) -> Vec<String> {
         }
     }
     found.0
+}
+
+/// What real processes cannot do, or only in more time than anybody waits.
+fn on_processes(spec: &Spec, found: &mut Found) {
+    for strike in &spec.fault {
+        for kind in &strike.kinds {
+            if let Some(why) = kind.lacks_processes() {
+                found.say(format!("fault `{}`: `{}` with `level = \"processes\"`: {why}", strike.shown(), kind.word()));
+            }
+        }
+    }
+    let all = u64::try_from(spec.count()).unwrap_or(u64::MAX).saturating_mul(u64::from(spec.scenarios));
+    if all > MOST_ON_PROCESSES {
+        found.say(format!(
+            "it asks for {all} scenarios ({} cells of `scenarios` = {}); with `level = \"processes\"` at most {MOST_ON_PROCESSES}",
+            spec.count(),
+            spec.scenarios
+        ));
+    }
+    let workers: u32 = Stage::WORKERS.into_iter().map(|stage| spec.workers.of(stage).min(MOST_WORKERS + 1)).sum();
+    if workers > MOST_WORKERS {
+        found.say(format!("`workers` are {workers} processes; with `level = \"processes\"` at most {MOST_WORKERS}"));
+    }
 }
 
 struct Found(Vec<String>);

@@ -7,7 +7,7 @@ use socrates_stats::{Interval, Z_95, kaplan_meier, mcnemar, paired_difference, q
 use crate::draws::float;
 use crate::head::Step;
 use crate::kind::Kind;
-use crate::ledger::{AttemptRow, Safety, ScenarioRow};
+use crate::ledger::{AttemptRow, Ledger, Safety, ScenarioRow, Tally};
 use crate::spec::{Cell, Spec};
 
 /// One batch of one cell: what is played by itself, on any thread.
@@ -36,14 +36,21 @@ pub struct Played {
     pub recoveries: Vec<(Kind, u64)>,
     /// What must be zero.
     pub safety: Safety,
+    /// What was to strike, and what did.
+    pub faults: BTreeMap<Kind, Tally>,
 }
 
 /// Plays a unit: the same specification and unit give the same result, wherever and whenever.
 #[must_use]
 pub fn play(spec: &Spec, cell: &Cell, batch: u32, step: Step<'_>) -> Played {
-    let ledger = crate::batch::play(spec, cell, batch, step);
-    let (attempts, scenarios) = (ledger.attempts, ledger.scenarios);
-    Played { attempts, scenarios, recoveries: ledger.recoveries, safety: ledger.safety }
+    crate::batch::play(spec, cell, batch, step).into()
+}
+
+impl From<Ledger> for Played {
+    fn from(ledger: Ledger) -> Self {
+        let Ledger { attempts, scenarios, recoveries, safety, faults, .. } = ledger;
+        Self { attempts, scenarios, recoveries, safety, faults }
+    }
 }
 
 /// What came of a cell; units are added in order of their batches.
@@ -57,6 +64,8 @@ pub struct CellResult {
     pub recoveries: Vec<(Kind, u64)>,
     /// What must be zero.
     pub safety: Safety,
+    /// What was to strike, and what did.
+    pub faults: BTreeMap<Kind, Tally>,
 }
 
 /// Figures of a cell.
@@ -142,7 +151,7 @@ impl CellResult {
     /// Nothing yet.
     #[must_use]
     pub fn of(cell: Cell) -> Self {
-        Self { cell, scenarios: Vec::new(), recoveries: Vec::new(), safety: Safety::default() }
+        Self { cell, scenarios: Vec::new(), recoveries: Vec::new(), safety: Safety::default(), faults: BTreeMap::new() }
     }
 
     /// Adds what came of the next unit; its attempts are handed back.
@@ -150,6 +159,11 @@ impl CellResult {
         self.scenarios.extend(played.scenarios);
         self.recoveries.extend(played.recoveries);
         self.safety.add(&played.safety);
+        for (kind, tally) in played.faults {
+            let sum = self.faults.entry(kind).or_default();
+            sum.scheduled += tally.scheduled;
+            sum.struck += tally.struck;
+        }
         played.attempts
     }
 
@@ -178,6 +192,13 @@ impl CellResult {
                 _ => None,
             },
         }
+    }
+
+    /// All faults together.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        let sum = |of: &dyn Fn(&Tally) -> u64| self.faults.values().map(of).sum();
+        Tally { scheduled: sum(&|one| one.scheduled), struck: sum(&|one| one.struck) }
     }
 
     fn realised(&self) -> impl Iterator<Item = &ScenarioRow> {

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use socrates_model::ScenarioId;
+use socrates_model::fault::FailureClass;
 use socrates_model::job::{JobKey, Stage};
-use socrates_orchestrator::{Attempt, Batch, Job, JobResult, Queue, Row, Scenario, Snapshot};
+use socrates_orchestrator::{Attempt, AttemptEnd, Batch, Job, JobResult, JobState, Queue, Row, Scenario, Snapshot};
 
 /// The rows that were committed.
 #[derive(Debug, Default)]
@@ -53,6 +54,45 @@ impl Rows {
             paused_stages: self.paused_stages.clone(),
             next_seq: self.next_seq,
         }
+    }
+
+    /// The rows that a store holds.
+    pub(crate) fn of(snapshot: Snapshot) -> Self {
+        Self {
+            scenarios: snapshot.scenarios.into_iter().map(|one| (one.spec.id.clone(), one)).collect(),
+            jobs: snapshot.jobs.into_iter().map(|one| (one.key.clone(), one)).collect(),
+            attempts: snapshot.attempts.into_iter().map(|(key, one)| ((key, one.number), one)).collect(),
+            results: snapshot.results.into_iter().collect(),
+            batches: snapshot.batches.into_iter().map(|one| (one.name.clone(), one)).collect(),
+            queues: snapshot.queues.into_iter().map(|one| (one.place, one)).collect(),
+            next_seq: snapshot.next_seq,
+            paused: snapshot.paused,
+            paused_stages: snapshot.paused_stages,
+            doubled: 0,
+        }
+    }
+
+    /// An attempt's row.
+    pub(crate) fn attempt(&self, key: &JobKey, number: u32) -> Option<&Attempt> {
+        self.attempts.get(&(key.clone(), number))
+    }
+
+    /// Stage and class of the failure with which each scenario's newest job that was given up ended.
+    pub(crate) fn failures(&self) -> BTreeMap<ScenarioId, (Stage, FailureClass)> {
+        let mut found: BTreeMap<ScenarioId, (u32, Stage, FailureClass)> = BTreeMap::new();
+        for ((key, _), attempt) in &self.attempts {
+            let given_up = self.jobs.get(key).is_some_and(|job| matches!(job.state, JobState::Failed | JobState::Dead));
+            let class = match (attempt.class, attempt.end) {
+                (None, Some(AttemptEnd::Lapsed)) => Some(FailureClass::WorkerDeath),
+                (None, Some(AttemptEnd::TimedOut)) => Some(FailureClass::Transient),
+                (class, _) => class,
+            };
+            let newest = found.get(&key.scenario).is_none_or(|(revision, _, _)| key.revision >= *revision);
+            if let (true, true, Some(class)) = (given_up, newest, class) {
+                found.insert(key.scenario.clone(), (key.revision, key.stage, class));
+            }
+        }
+        found.into_iter().map(|(id, (_, stage, class))| (id, (stage, class))).collect()
     }
 
     /// The scenario's row.

@@ -76,8 +76,19 @@ pub enum Level {
     /// The orchestrator's state machine in virtual time, with workers that are simulated.
     #[default]
     Simulator,
-    /// Real processes; not there yet.
+    /// Real processes: an orchestrator, its store and its workers, with authors that are simulated. Times are those of the wall.
     Processes,
+}
+
+impl Level {
+    /// What its clock is called.
+    #[must_use]
+    pub const fn clock(self) -> &'static str {
+        match self {
+            Self::Simulator => "virtual",
+            Self::Processes => "wall",
+        }
+    }
 }
 
 /// What the authors are assumed to do. Every value is a choice of the experimenter, measured on no model.

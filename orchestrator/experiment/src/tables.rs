@@ -1,18 +1,18 @@
 //! The tables: their columns, and the cells of a row as text.
 
+use socrates_model::fault::FailureClass;
 use socrates_model::wire::Recorded;
 
 use crate::ledger::{AttemptRow, ScenarioRow};
 use crate::results::{CellResult, Figures, Limited, Pairing};
 
-/// Columns of `attempts.csv`. Times are virtual, ms after the batch was submitted.
+/// Columns of `attempts.csv`. Times are of the level's clock, ms after the batch was submitted.
 pub const ATTEMPTS: &str =
     "cell,scenario,stage,revision,attempt,begun_ms,ended_ms,outcome,recorded,tokens_in,tokens_out";
 /// Columns of `scenarios.csv`.
-pub const SCENARIOS: &str =
-    "cell,scenario,result,realised,first_cut,begun_ms,ended_ms,attempts,asks,jobs,tokens_in,tokens_out";
+pub const SCENARIOS: &str = "cell,scenario,result,realised,first_cut,begun_ms,ended_ms,attempts,asks,jobs,tokens_in,tokens_out,failed_stage,failed_class";
 /// Columns of `cells.csv`.
-pub const CELLS: &str = "cell,workload,fault,rate,tries,policy,scenarios,realised,success,success_low,success_high,first_cut,first_cut_low,first_cut_high,attempts,jobs,amplification,asks,tokens_in,tokens_out,tokens_per_realised,time_p50_s,time_p95_s,mean_asks,mean_asks_limit,mean_time_s,mean_time_limit_s,recoveries,recovery_p50_s,recovery_p95_s,recovery_p99_s,only_first_policy,only_this_policy,difference,difference_low,difference_high,mcnemar_p,lost,doubled,complaints,first_complaint";
+pub const CELLS: &str = "cell,workload,fault,rate,tries,policy,scenarios,realised,success,success_low,success_high,first_cut,first_cut_low,first_cut_high,attempts,jobs,amplification,asks,tokens_in,tokens_out,tokens_per_realised,time_p50_s,time_p95_s,mean_asks,mean_asks_limit,mean_time_s,mean_time_limit_s,recoveries,recovery_p50_s,recovery_p95_s,recovery_p99_s,only_first_policy,only_this_policy,difference,difference_low,difference_high,mcnemar_p,faults_scheduled,faults_struck,lost,doubled,complaints,first_complaint";
 
 /// A number with four digits after the point.
 fn real(value: f64) -> String {
@@ -33,6 +33,20 @@ const fn said(recorded: Recorded) -> &'static str {
         Recorded::Duplicate => "duplicate",
         Recorded::Late => "late",
         Recorded::Busy => "busy",
+    }
+}
+
+/// A class of failures, as tables and plots call it.
+#[must_use]
+pub const fn class_name(class: FailureClass) -> &'static str {
+    match class {
+        FailureClass::Transient => "transient",
+        FailureClass::Overload => "overload",
+        FailureClass::Semantic => "semantic",
+        FailureClass::Unparsable => "unparsable",
+        FailureClass::WorkerDeath => "worker lost",
+        FailureClass::Poison => "poison",
+        FailureClass::Permanent => "permanent",
     }
 }
 
@@ -72,6 +86,8 @@ pub fn scenario(cell: usize, row: &ScenarioRow) -> Vec<String> {
         row.jobs.to_string(),
         tokens_in,
         tokens_out,
+        maybe(row.failed, |(stage, _)| stage.to_string()),
+        maybe(row.failed, |(_, class)| class_name(class).to_owned()),
     ]
 }
 
@@ -120,6 +136,8 @@ pub fn cell(result: &CellResult, figures: &Figures, means: &Limited, pairing: Op
         paired(&|pair| real(pair.difference.low)),
         paired(&|pair| real(pair.difference.high)),
         paired(&|pair| real(pair.p)),
+        result.tally().scheduled.to_string(),
+        result.tally().struck.to_string(),
         result.safety.lost.to_string(),
         result.safety.doubled.to_string(),
         result.safety.complaints.to_string(),

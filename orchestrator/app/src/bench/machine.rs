@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The lines before every table of figures.
-pub(super) fn told(build: &str) -> Vec<String> {
+pub(crate) fn told(build: &str) -> Vec<String> {
     let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
     let info = read("/proc/cpuinfo");
     let value =

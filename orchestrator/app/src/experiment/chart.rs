@@ -26,7 +26,7 @@ const MARK: f64 = 3.6;
 /// Letters of a panel's title at most.
 const TITLE: usize = 58;
 /// What every plot says of itself.
-const STAMP: &str = "injected faults";
+pub(super) const STAMP: &str = "injected faults";
 
 /// A plot as a drawing of its own.
 pub(super) fn svg(plot: &Plot) -> String {

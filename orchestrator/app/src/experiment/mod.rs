@@ -1,22 +1,32 @@
-//! `experiment`: faults at set rates against retry policies, in virtual time, as tables and a page.
+//! `experiment`: faults at set rates against retry policies, in virtual time or on real processes, as tables and a page.
 //!
 //! ```text
-//! specification ─► cells ─► units, on every core ─► results ─┬─► attempts.csv, scenarios.csv, cells.csv
-//!                                                            ├─► plots/*.svg ─► report.html
-//!                                                            └─► spec.lock.toml
+//! specification ─► cells ─► units ─┬─► simulated, on every core ─┬─► results ─┬─► attempts.csv, scenarios.csv, cells.csv
+//!                                  └─► processes, one by one ────┘            ├─► plots/*.svg ─► report.html
+//!                                                                             └─► spec.lock.toml, predictions.csv
 //! ```
 
 mod chart;
+mod heat;
 mod page;
+mod player;
+mod processes;
+
+pub use player::{PlayOptions, play};
 
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use socrates_experiment::beside::{Beside, PREDICTIONS};
+use socrates_experiment::heat::heats;
 use socrates_experiment::plots::plots;
-use socrates_experiment::{CellResult, Figures, Limited, Pairing, Spec, checked, limited, play, tables, units};
+use socrates_experiment::spec::{Cell, Level};
+use socrates_experiment::{CellResult, Figures, Limited, Pairing, Played, Spec, checked, limited, tables, units};
 use socrates_model::Digest;
 use socrates_stream::csv::joined;
 
+use crate::bench::machine;
+use crate::config::Config;
 use crate::cores;
 use crate::exit::{Code, Complaint};
 use crate::files;
@@ -36,19 +46,24 @@ pub(crate) const DOOR: Door = Door {
         ("reliability", include_str!("../../../../prompts/protocols/reliability.toml")),
         ("worker-loss", include_str!("../../../../prompts/protocols/worker-loss.toml")),
         ("outages", include_str!("../../../../prompts/protocols/outages.toml")),
+        ("processes", include_str!("../../../../prompts/protocols/processes.toml")),
     ],
 };
 
 /// Options of `experiment`.
 #[derive(Debug, Clone)]
 pub struct ExperimentOptions {
-    /// Specification: a TOML file, or one that comes with the program: `reliability`, `worker-loss`, `outages`.
+    /// Specification: a TOML file, or one that comes with the program: `reliability`, `worker-loss`, `outages`,
+    /// `processes`.
     pub spec: PathBuf,
     /// Folder for the tables, the plots, the page and the specification with every value.
     pub out: PathBuf,
     /// Number of scenarios of each cell, instead of those of the specification.
     pub scenarios: Option<u32>,
 }
+
+/// Folder below that of the results for job stores and logs of processes, as long as they are needed.
+const PROCESSES: &str = "processes";
 
 /// What was played.
 struct Done {
@@ -58,21 +73,53 @@ struct Done {
     attempts_left_out: u64,
 }
 
+impl Done {
+    fn of(cells: &[Cell]) -> Self {
+        Self {
+            results: cells.iter().cloned().map(CellResult::of).collect(),
+            attempts: vec![tables::ATTEMPTS.to_owned()],
+            attempts_left_out: 0,
+        }
+    }
+
+    /// Adds a unit of a cell.
+    fn add(&mut self, cell: usize, played: Played, most_attempts: u64) {
+        let Some(result) = self.results.get_mut(cell) else { return };
+        let attempts = result.add(played);
+        let room = most_attempts.saturating_sub(self.attempts.len() as u64 - 1);
+        let room = usize::try_from(room).unwrap_or(usize::MAX).min(attempts.len());
+        self.attempts.extend(attempts.iter().take(room).map(|row| joined(tables::attempt(cell, row))));
+        self.attempts_left_out += (attempts.len() - room) as u64;
+    }
+}
+
 /// Plays an experiment and writes what came of it.
 ///
 /// # Errors
 /// A specification that cannot be read or done; a folder that cannot be written to; a result that was lost or doubled, or a state
 /// that the checker complains of, with a code of its own, after everything is written.
-pub fn experiment(talk: &Printer, options: &ExperimentOptions) -> Result<(), Complaint> {
+pub async fn experiment(talk: &Printer, config: &Config, options: &ExperimentOptions) -> Result<(), Complaint> {
     let spec = load(&options.spec, options.scenarios)?;
     let cells = plural(spec.cells().len(), "cell");
     talk.line(&format!("experiment {}: {cells} of {}", spec.title, plural(spec.scenarios as usize, "scenario")));
-    let done = played(talk, &spec);
+    let (done, besides, machine) = match spec.level {
+        Level::Simulator => (simulated(talk, &spec), Vec::new(), Vec::new()),
+        Level::Processes => {
+            let machine = machine::told(&config.program().build);
+            machine.iter().for_each(|line| talk.line(line));
+            let done = on_processes(talk, config, &spec, &options.out).await?;
+            let foretold = simulated(talk, &Spec { level: Level::Simulator, attempt_rows: 0, ..spec.clone() });
+            let pairs = done.results.iter().zip(&foretold.results);
+            let besides: Vec<Beside> = pairs.map(|(here, there)| Beside::of(here, there)).collect();
+            (done, besides, machine)
+        }
+    };
     let figures: Vec<Figures> = done.results.iter().map(CellResult::figures).collect();
     let pairings: Vec<Option<Pairing>> =
         done.results.iter().map(|one| done.results.get(one.cell.base).and_then(|first| one.beside(first))).collect();
     let means = limited(&done.results);
     let plots = plots(&spec, &done.results, &figures);
+    let heats = heats(&done.results);
     let again = format!("socrates experiment {}", files::shell(&options.out.join("spec.lock.toml")));
     let told = page::Told {
         spec: &spec,
@@ -81,8 +128,11 @@ pub fn experiment(talk: &Printer, options: &ExperimentOptions) -> Result<(), Com
         means: &means,
         pairings: &pairings,
         plots: &plots,
+        heats: &heats,
         again: &again,
         attempts_left_out: done.attempts_left_out,
+        besides: &besides,
+        machine: &machine,
     };
     let page = page::html(&told);
     write(&options.out, &told, &done.attempts, &page)?;
@@ -110,15 +160,11 @@ pub(crate) fn load(from: &Path, scenarios: Option<u32>) -> Result<Spec, Complain
     checked(spec).map_err(|problems| DOOR.refused(from, problems))
 }
 
-/// Plays every unit on every core; results are added up in order, so that nobody can see how many cores there were.
-fn played(talk: &Printer, spec: &Spec) -> Done {
+/// Plays every unit on every core in virtual time; results are added up in order, so that nobody can see how many cores there were.
+fn simulated(talk: &Printer, spec: &Spec) -> Done {
     let cells = spec.cells();
     let all = units(spec, &cells);
-    let mut done = Done {
-        results: cells.iter().cloned().map(CellResult::of).collect(),
-        attempts: vec![tables::ATTEMPTS.to_owned()],
-        attempts_left_out: 0,
-    };
+    let mut done = Done::of(&cells);
     let mut progress = Progress::new(*talk, "playing", all.len());
     progress.at(0, "");
     let mut finished = 0;
@@ -126,22 +172,47 @@ fn played(talk: &Printer, spec: &Spec) -> Done {
         let one = |number: usize| {
             let unit = round.get(number)?;
             let cell = cells.get(unit.cell)?;
-            Some((unit.cell, play(spec, cell, unit.batch, &socrates_orchestrator::step)))
+            Some((unit.cell, socrates_experiment::play(spec, cell, unit.batch, &socrates_orchestrator::step)))
         };
         let made = cores::each(round.len(), one, &mut |_| {
             finished += 1;
             progress.at(finished, "");
         });
         for (number, played) in made.into_iter().flatten() {
-            let Some(result) = done.results.get_mut(number) else { continue };
-            let attempts = result.add(played);
-            let room = spec.attempt_rows.saturating_sub(done.attempts.len() as u64 - 1);
-            let room = usize::try_from(room).unwrap_or(usize::MAX).min(attempts.len());
-            done.attempts.extend(attempts.iter().take(room).map(|row| joined(tables::attempt(number, row))));
-            done.attempts_left_out += (attempts.len() - room) as u64;
+            done.add(number, played, spec.attempt_rows);
         }
     }
     done
+}
+
+/// Plays every unit on processes, one after the other, so that none is measured while another takes its cores.
+async fn on_processes(talk: &Printer, config: &Config, spec: &Spec, out: &Path) -> Result<Done, Complaint> {
+    let root = out.join(PROCESSES);
+    let file = root.join("spec.toml");
+    files::write(&file, values(spec)?.as_bytes())?;
+    let site = processes::Site { config, spec, file: &file, root: &root };
+    let cells = spec.cells();
+    let all = units(spec, &cells);
+    let mut done = Done::of(&cells);
+    let mut progress = Progress::new(*talk, "playing", all.len());
+    for (finished, unit) in all.iter().enumerate() {
+        progress.at(finished, "");
+        let Some(cell) = cells.get(unit.cell) else { continue };
+        let played = processes::play(&site, cell, unit.batch).await.map_err(|why| processes::about(unit.cell, why))?;
+        done.add(unit.cell, played, spec.attempt_rows);
+    }
+    progress.at(all.len(), "");
+    if done.results.iter().all(|one| one.safety.is_clean()) {
+        drop(std::fs::remove_dir_all(&root));
+    }
+    Ok(done)
+}
+
+/// The specification as a file.
+fn values(spec: &Spec) -> Result<String, Complaint> {
+    toml::to_string(spec).map_err(|why| {
+        Complaint::input(format!("the specification cannot be written down again: {why}"), "").with_code(Code::Ours)
+    })
 }
 
 /// Writes every file; the page last.
@@ -160,6 +231,10 @@ fn write(out: &Path, told: &page::Told<'_>, attempts: &[String], page: &str) -> 
     if told.spec.attempt_rows > 0 {
         named.push(("attempts.csv", attempts.join("\n") + "\n"));
     }
+    if !told.besides.is_empty() {
+        let rows = told.besides.iter().zip(told.results).map(|(beside, one)| joined(beside.row(one))).collect();
+        named.push(("predictions.csv", with_head(PREDICTIONS, rows)));
+    }
     let lock = lock(told.spec, &named)?;
     named.push(("spec.lock.toml", lock));
     for (name, text) in &named {
@@ -168,16 +243,19 @@ fn write(out: &Path, told: &page::Told<'_>, attempts: &[String], page: &str) -> 
     for plot in told.plots {
         files::write(&out.join("plots").join(format!("{}.svg", plot.name)), chart::svg(plot).as_bytes())?;
     }
+    files::write(&out.join("plots/failures.svg"), heat::svg(told.heats).as_bytes())?;
     files::write(&out.join("report.html"), page.as_bytes())
 }
 
 /// The specification with every value, and what came of it by digest.
 fn lock(spec: &Spec, tables: &[(&str, String)]) -> Result<String, Complaint> {
-    let values = toml::to_string(spec).map_err(|why| {
-        Complaint::input(format!("the specification cannot be written down again: {why}"), "").with_code(Code::Ours)
-    })?;
+    let values = values(spec)?;
+    let again = match spec.level {
+        Level::Simulator => "does it again, byte for byte, with this version",
+        Level::Processes => "does it again with the same faults; times are those of the machine",
+    };
     let mut text = format!(
-        "# Every value of this experiment. `socrates experiment spec.lock.toml` does it again, byte for byte, with this version.\n\
+        "# Every value of this experiment. `socrates experiment spec.lock.toml` {again}.\n\
          # socrates {}\n# specification {}\n",
         env!("CARGO_PKG_VERSION"),
         Digest::of(values.as_bytes())
@@ -220,6 +298,9 @@ fn object(one: &CellResult, figures: &Figures) -> serde_json::Value {
         "workload": cell.workload.name, "fault": cell.strike.shown(), "rate": cell.rate, "tries": cell.tries,
         "policy": cell.policy.name, "scenarios": one.scenarios.len(), "realised": figures.successes,
         "first_cut": figures.first_cuts, "attempts": figures.attempts, "jobs": figures.jobs,
+        "faults": one.faults.iter().map(|(kind, tally)| (kind.word(), tally)).map(|(word, tally)| {
+            json!({ "kind": word, "scheduled": tally.scheduled, "struck": tally.struck })
+        }).collect::<Vec<_>>(),
         "lost": one.safety.lost, "doubled": one.safety.doubled, "complaints": one.safety.complaints,
     })
 }

@@ -1,11 +1,15 @@
 //! The report of an experiment: one page that a stranger can read, which loads nothing.
 
+use std::collections::BTreeMap;
+
 use socrates_draw::svg::{escape, escape_code};
+use socrates_experiment::beside::Beside;
+use socrates_experiment::heat::Heat;
 use socrates_experiment::plots::Plot;
 use socrates_experiment::spec::{Cell, Level};
-use socrates_experiment::{CellResult, Figures, Kind, Limited, Pairing, Spec};
+use socrates_experiment::{CellResult, Figures, Kind, Limited, Pairing, Spec, Tally};
 
-use super::chart;
+use super::{chart, heat};
 use crate::words::plural;
 
 /// The look of the page.
@@ -29,10 +33,16 @@ pub(super) struct Told<'a> {
     pub(super) means: &'a [Limited],
     pub(super) pairings: &'a [Option<Pairing>],
     pub(super) plots: &'a [Plot],
+    /// How scenarios ended.
+    pub(super) heats: &'a [Heat],
     /// The command that does it again.
     pub(super) again: &'a str,
     /// Attempts that `attempts.csv` does not have.
     pub(super) attempts_left_out: u64,
+    /// Every cell beside what the simulator says of it, where it was played on processes.
+    pub(super) besides: &'a [Beside],
+    /// The machine that it was played on, where that matters.
+    pub(super) machine: &'a [String],
 }
 
 /// The page.
@@ -45,14 +55,26 @@ pub(super) fn html(told: &Told<'_>) -> String {
     if !told.spec.about.is_empty() {
         out.push_str(&format!("<p>{}</p>\n", escape_code(&told.spec.about)));
     }
-    out.push_str(
-        "<section class=\"stamp\">Injected faults and a simulated author, no language model and no real process: this shows what the \
-         orchestrator's rules make of faults, and says nothing about any model.</section>\n",
-    );
+    let stamp = match told.spec.level {
+        Level::Simulator => {
+            "Injected faults and a simulated author, no language model and no real process: this shows what the orchestrator's rules \
+             make of faults, and says nothing about any model."
+        }
+        Level::Processes => {
+            "Injected faults and a simulated author, no language model. Level: real processes, wall time: orchestrator, store, bus and \
+             workers are those of the program, and were killed and stopped by signals. It says nothing about any model."
+        }
+    };
+    out.push_str(&format!("<section class=\"stamp\">{stamp}</section>\n"));
     section(&mut out, "What was done", &done(told));
+    section(&mut out, "What struck", &struck(told));
+    if !told.besides.is_empty() {
+        section(&mut out, "Beside the simulator", &beside(told));
+    }
     section(&mut out, "Nothing lost, nothing done twice", &safety(told));
     section(&mut out, "What is assumed", &assumed(told.spec));
     section(&mut out, "Policies", &policies(told.spec));
+    section(&mut out, "How scenarios ended", &ends(told.heats));
     section(&mut out, "Plots", &plots(told.plots));
     section(&mut out, "Every cell", &tables(told));
     section(&mut out, "Files beside this page", &files(told));
@@ -88,10 +110,10 @@ fn done(told: &Told<'_>) -> String {
         Level::Simulator => {
             "the orchestrator's own state machine in virtual time, with workers and authors that are simulated"
         }
-        Level::Processes => "real processes",
+        Level::Processes => "real processes in wall time, with authors that are simulated",
     };
     let tries: Vec<String> = spec.tries.iter().map(ToString::to_string).collect();
-    list(&[
+    let mut lines = vec![
         format!(
             "{} of {} scenarios, in batches of {}: {jobs} jobs and {attempts} attempts by {level}; seed {}.",
             plural(told.results.len(), "cell"),
@@ -109,7 +131,82 @@ fn done(told: &Told<'_>) -> String {
         "Whether a fault strikes is a hash of seed, kind, scenario, stage, revision and attempt: every policy meets the same faults, \
          so policies are compared scenario by scenario."
             .to_owned(),
-    ])
+    ];
+    lines.extend(told.machine.iter().map(|line| format!("<code>{}</code>", escape(line))));
+    list(&lines)
+}
+
+/// What was drawn for attempts, and what was seen of it.
+fn struck(told: &Told<'_>) -> String {
+    let mut sums: BTreeMap<Kind, Tally> = BTreeMap::new();
+    for (kind, tally) in told.results.iter().flat_map(|one| &one.faults) {
+        let sum = sums.entry(*kind).or_default();
+        sum.scheduled += tally.scheduled;
+        sum.struck += tally.struck;
+    }
+    if sums.is_empty() {
+        return "<p>No faults were put in.</p>".to_owned();
+    }
+    let seen = match told.spec.level {
+        Level::Simulator => "it happened",
+        Level::Processes => {
+            "the killed process was gone by that signal, the kernel said that the stopped one was stopped, the author's failure is in \
+             the store"
+        }
+    };
+    let row = |(kind, tally): (&Kind, &Tally)| {
+        format!(
+            "<tr><td class=\"name\"><code>{}</code></td><td>{}</td><td>{}</td></tr>",
+            kind.word(),
+            tally.scheduled,
+            tally.struck
+        )
+    };
+    format!(
+        "<table><tr><th class=\"name\">fault</th><th>scheduled</th><th>struck</th></tr>{}</table><p class=\"quiet\">Scheduled: drawn for \
+         an attempt that began. Struck: {seen}. The rest came too late: another fault had ended the attempt, or its lease, before.</p>",
+        sums.iter().map(row).collect::<String>()
+    )
+}
+
+/// What was measured beside what the simulator says of the same cells.
+fn beside(told: &Told<'_>) -> String {
+    let real = |value: f64| format!("{value:.2}");
+    let times = |times: Option<[f64; 2]>| times.map_or_else(String::new, |[p50, p95]| format!("{p50:.1} / {p95:.1}"));
+    let row = |(one, result): (&Beside, &CellResult)| {
+        let (cell, share) = (&result.cell, one.success);
+        format!(
+            "<tr><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{} %</td><td class=\"name\">{}</td><td>{} of {}</td>\
+             <td>{:.1} ({:.1} to {:.1})</td><td>{:.1}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            escape(&cell.workload.name),
+            escape(&cell.strike.shown()),
+            percent(cell.rate),
+            escape(&cell.policy.name),
+            one.same,
+            one.of,
+            100.0 * share.measured.estimate,
+            100.0 * share.measured.low,
+            100.0 * share.measured.high,
+            100.0 * share.simulated.estimate,
+            real(one.amplification.measured),
+            real(one.amplification.simulated),
+            one.struck.measured,
+            one.struck.simulated,
+            times(one.time_s.measured),
+            times(one.time_s.simulated),
+            times(one.recovery_s.measured),
+            times(one.recovery_s.simulated),
+        )
+    };
+    let rows: String = told.besides.iter().zip(told.results).map(row).collect();
+    let pair = "<th>measured</th><th>simulated</th>";
+    format!(
+        "<p class=\"quiet\">The same cells with the same faults in the simulator. Ends: scenarios that ended the same way in both. Times \
+         and recoveries: 50 / 95 %, s.</p><div class=\"wide\"><table><tr><th colspan=\"4\"></th><th></th><th colspan=\"2\">realised, %</th>\
+         <th colspan=\"2\">attempts a job</th><th colspan=\"2\">faults struck</th><th colspan=\"2\">time, s</th><th colspan=\"2\">recovery, s</th></tr>\
+         <tr><th class=\"name\">workload</th><th class=\"name\">fault</th><th>rate</th><th class=\"name\">policy</th><th>same end</th>{}</tr>{rows}</table></div>",
+        pair.repeat(5)
+    )
 }
 
 fn safety(told: &Told<'_>) -> String {
@@ -143,12 +240,20 @@ fn safety(told: &Told<'_>) -> String {
         })
         .collect();
     let bad = if bad.is_empty() { String::new() } else { list(&bad) };
+    let meaning = match told.spec.level {
+        Level::Simulator => {
+            "Lost: a scenario that was taken and never ended, or a result that was acknowledged and is not in the store. Doubled: a result \
+             or an end that was written or acknowledged twice. The checker looks at the state while a batch runs, and at what another \
+             orchestrator would find in its store."
+        }
+        Level::Processes => {
+            "Lost: a scenario that was taken and never ended. Doubled: one that was told to have ended in two ways. The checker asks the \
+             rules of <code>socrates fsck</code> of the store that is left; a process that ended by itself is a complaint too."
+        }
+    };
     format!(
         "<p><span class=\"{class}\">{lost} lost, {doubled} doubled, {complaints} complaints of the checker</span> over {scenarios} \
-         scenarios, with {recoveries} struck jobs that went on.{bound}</p>{bad}<p class=\"quiet\">Lost: a scenario that was taken and \
-         never ended, or a result that was acknowledged and is not in the store. Doubled: a result or an end that was written or \
-         acknowledged twice. The checker looks at the state while a batch runs, and at what another orchestrator would find in its \
-         store.</p>"
+         scenarios, with {recoveries} struck jobs that went on.{bound}</p>{bad}<p class=\"quiet\">{meaning}</p>"
     )
 }
 
@@ -182,6 +287,7 @@ fn assumed(spec: &Spec) -> String {
                 " Its token is missed after {} ms, its successor comes after {} ms.",
                 times.token, times.restart
             ),
+            Kind::WorkerFreeze => format!(" It lasts {} ms.", times.cut),
             Kind::Partition => format!(" It lasts {} ms.", times.cut),
             Kind::LlmTimeout => format!(" It is waited for {} ms; what was asked is paid for.", times.timeout),
             Kind::Overload if times.retry_after > 0 => format!(" It asks for a wait of {} ms.", times.retry_after),
@@ -194,16 +300,25 @@ fn assumed(spec: &Spec) -> String {
     for strike in spec.fault.iter().filter(|strike| strike.from_ms > 0 || strike.to_ms.is_some()) {
         let to = strike.to_ms.map_or_else(|| "the end".to_owned(), |to| format!("{} s", to / 1_000));
         lines.push(format!(
-            "<b>{}</b> strikes from {} s to {to} of virtual time.",
+            "<b>{}</b> strikes from {} s to {to} of {} time.",
             escape(&strike.shown()),
-            strike.from_ms / 1_000
+            strike.from_ms / 1_000,
+            spec.level.clock()
         ));
     }
-    lines.push(
-        "Hints and answers arrive unless a fault keeps them from it; machines do not slow down under load, and no message is torn. \
-         <code>spec.lock.toml</code> has every value."
-            .to_owned(),
-    );
+    lines.push(match spec.level {
+        Level::Simulator => {
+            "Hints and answers arrive unless a fault keeps them from it; machines do not slow down under load, and no message is torn. \
+             <code>spec.lock.toml</code> has every value."
+                .to_owned()
+        }
+        Level::Processes => {
+            "Answers of authors, how long work takes and when faults are due are as in the simulator. Messages, commits, polls, tokens and \
+             restarts take the time that they take here; what is said of them above holds for the simulator's figures. A successor is \
+             started at once. <code>spec.lock.toml</code> has every value."
+                .to_owned()
+        }
+    });
     list(&lines)
 }
 
@@ -240,6 +355,15 @@ fn policies(spec: &Spec) -> String {
     )
 }
 
+fn ends(heats: &[Heat]) -> String {
+    format!(
+        "<figure>{}<figcaption>Share of scenarios by how they ended, at the highest rate and with the most tries: realised, judged otherwise, or \
+         by the class of the failure that ended the newest job which was given up. <code>scenarios.csv</code> has stage and class of \
+         each.</figcaption></figure>\n",
+        heat::svg(heats)
+    )
+}
+
 fn plots(plots: &[Plot]) -> String {
     let figure = |plot: &Plot| {
         let more = match plot.left_out {
@@ -261,7 +385,7 @@ fn tables(told: &Told<'_>) -> String {
     let same = |a: &Cell, b: &Cell| a.workload.name == b.workload.name && a.strike.shown() == b.strike.shown();
     let mut out = String::from(
         "<p class=\"quiet\">In brackets 95 % intervals: Wilson for shares, Bonett and Price for differences; p of McNemar's test. \
-         Times are virtual, from the first attempt of a scenario to its end: the median is that of realised ones; the mean counts those that were not realised \
+         Times are from the first attempt of a scenario to its end: the median is that of realised ones; the mean counts those that were not realised \
          with the longest time that any of the policies beside it took. Recovery is from a fault until its job went on.</p>",
     );
     let mut from = 0;
@@ -330,14 +454,19 @@ fn files(told: &Told<'_>) -> String {
         0 => String::new(),
         more => format!(" Left out, beyond <code>attempt_rows</code>: {more} attempts."),
     };
+    let foretold = match told.spec.level {
+        Level::Simulator => "",
+        Level::Processes => " <code>predictions.csv</code>: each beside the simulator's.",
+    };
+    let how = match told.spec.level {
+        Level::Simulator => "does it again, byte for byte",
+        Level::Processes => "does it again with the same faults",
+    };
     list(&[
-        "<code>cells.csv</code>: a row a cell, with every figure of this page.".to_owned(),
+        format!("<code>cells.csv</code>: a row a cell, with every figure of this page.{foretold}"),
         "<code>scenarios.csv</code>: a row a scenario of each cell.".to_owned(),
         format!("<code>attempts.csv</code>: a row an attempt, in the order of cells and batches.{left_out}"),
         "<code>plots/*.svg</code>: the plots by themselves.".to_owned(),
-        format!(
-            "<code>spec.lock.toml</code>: everything that was assumed; <code>{}</code> does it again, byte for byte.",
-            escape(told.again)
-        ),
+        format!("<code>spec.lock.toml</code>: everything that was assumed; <code>{}</code> {how}.", escape(told.again)),
     ])
 }

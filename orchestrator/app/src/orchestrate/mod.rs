@@ -73,6 +73,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) waits: bool,
     /// Where figures are served; none for nowhere.
     pub(crate) metrics: Option<tokio::net::TcpListener>,
+    /// Rules of an experiment, instead of those made of the values above.
+    pub(crate) rules: Option<Policy>,
 }
 
 /// How long the orchestrator of a supervisor waits for the one of an earlier supervisor, which is leaving, to give up the store.
@@ -91,7 +93,8 @@ pub(crate) async fn serve(
 ) -> anyhow::Result<()> {
     let (started, began_ms) = (Instant::now(), socrates_link::wall_ms());
     let blobs = LocalBlobs::new(config.dir.join("blobs"), config.durability == Durability::Disk);
-    let policy = Policy {
+    let rules = config.rules.map(|rules| Policy { code_version: config.code_version.clone(), ..rules });
+    let policy = rules.unwrap_or_else(|| Policy {
         lease_ms: config.lease_ms,
         beat_ms: config.beat_ms,
         author_deadline_ms: config.deadlines_ms.0,
@@ -107,7 +110,7 @@ pub(crate) async fn serve(
         requests_per_minute: config.author_rates.1,
         circuit_percent: config.circuit_percent,
         ..Policy::default().asking_again(config.asks_again)
-    };
+    });
     let (store, mut state) = loop {
         let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
         let (policy, alone) = (policy.clone(), config.alone);

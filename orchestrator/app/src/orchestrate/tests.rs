@@ -48,6 +48,7 @@ async fn open(dir: &Path) -> Site {
         alone: false,
         waits: true,
         metrics: None,
+        rules: None,
     };
     let mut alive = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.unwrap();
     let running = tokio::spawn(serve(config, Arc::clone(&bus), shutdown));
@@ -282,6 +283,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         alone: false,
         waits: true,
         metrics: None,
+        rules: None,
     };
     let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
     let refused = tokio::time::timeout(LIMIT, serve(config, bus, shutdown)).await.expect("hangs");

@@ -338,7 +338,18 @@ impl Up {
             Durable::Disk => Durability::Disk,
             Durable::Process => Durability::Process,
         };
-        let options = OrchestratorOptions { dir, listen, insecure, connect, namespace, durable, metrics, tied, alone };
+        let options = OrchestratorOptions {
+            dir,
+            listen,
+            insecure,
+            connect,
+            namespace,
+            durable,
+            metrics,
+            tied,
+            alone,
+            rules: None,
+        };
         done(process::orchestrator(talk, config, &options).await)
     }
 }

@@ -138,7 +138,7 @@ pub(crate) enum Verb {
     Map(map::Map),
     /// Measure authors: how often scenarios are right at first, after asking again, and in the run.
     Evaluate(evaluate::Evaluate),
-    /// Try retry policies on injected faults in virtual time: what is lost, doubled, repeated, and what it costs.
+    /// Try retry policies on injected faults, in virtual time or on real processes: what is lost, doubled, repeated, and what it costs.
     Experiment(experiment::Experiment),
     /// Take out of a library what others can use.
     Library(library::Library),
@@ -154,6 +154,9 @@ pub(crate) enum Verb {
     /// The orchestrator process; started by `run` and `cluster up`.
     #[command(hide = true)]
     Orchestrator(cluster::Up),
+    /// A part of an experiment on processes; started by `experiment`.
+    #[command(hide = true)]
+    Play(experiment::Play),
 }
 
 impl Verb {
@@ -162,6 +165,7 @@ impl Verb {
         matches!(self, Self::Worker(cluster::Worker { tied: true, .. }))
             || matches!(self, Self::Orchestrator(cluster::Up { tied: true, .. }))
             || matches!(self, Self::View(view::View { tied: true, .. }))
+            || matches!(self, Self::Play(_))
     }
 
     /// Does it.
@@ -194,13 +198,14 @@ impl Verb {
             Self::Bt(verb) => verb.act(talk),
             Self::Map(verb) => verb.act(talk),
             Self::Evaluate(verb) => verb.act(talk, config).await,
-            Self::Experiment(verb) => verb.act(talk),
+            Self::Experiment(verb) => verb.act(talk, config).await,
             Self::Library(verb) => verb.act(talk),
             Self::Scenarios(verb) => verb.act(talk).await,
             Self::Cluster(verb) => verb.act(talk, config).await,
             Self::Dev(verb) => verb.act(talk, config).await,
             Self::Worker(verb) => verb.act(config).await,
             Self::Orchestrator(verb) => verb.act(talk, config).await,
+            Self::Play(verb) => verb.act(talk, config).await,
         }
     }
 }
