@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use socrates_model::job::Stage;
-use socrates_model::wire::{BatchStatus, Failed, Limits, Part, StageStatus, Table, WorkerStatus};
+use socrates_model::wire::{BatchStatus, Failed, Limits, Part, Priority, StageStatus, Table, WorkerStatus};
 
+use crate::circuit::Allows;
 use crate::pace::Pacer;
 use crate::state::{Job, Millis, ScenarioEnd, State, Worker};
 
@@ -20,6 +21,8 @@ const FAULT_CHARS: usize = 200;
 /// Paused batches that are told, at most, and bytes of the name of each.
 const PAUSED: usize = 20;
 const NAME_BYTES: usize = 200;
+/// Batches whose shares are told by name, at most.
+const SHARES: usize = 32;
 /// Ready jobs of a stage that are looked at for the one that has waited the longest, oldest scenarios first.
 const LOOKED_AT: usize = 1_000;
 
@@ -47,6 +50,7 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
                 limits: own.limits,
                 taken: if own.limits.are_none() { Limits::default() } else { own.taken() },
                 over: own.over,
+                priority: scenario.priority,
                 pace: state.paces.get(name).map_or_else(|| Pacer::default().told(now), |pacer| pacer.told(now)),
                 ..BatchStatus::default()
             }
@@ -85,8 +89,76 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
         listed.push(batch);
     }
     listed.reverse();
+    set_ends(state, &mut listed);
     let left = order.len() - listed.len();
     (listed, count(left))
+}
+
+/// Says of batches that are done when the last of it ended.
+fn set_ends(state: &State, batches: &mut [BatchStatus]) {
+    let is_done = |batch: &&mut BatchStatus| batch.done == batch.total;
+    let mut done: BTreeMap<String, &mut BatchStatus> =
+        batches.iter_mut().filter(is_done).map(|batch| (batch.name.clone(), batch)).collect();
+    if done.is_empty() {
+        return;
+    }
+    for scenario in state.scenarios.values() {
+        let Some(batch) = done.get_mut(&scenario.batch) else { continue };
+        // What was made last of a scenario is what ended it.
+        let last = scenario.jobs.last().and_then(|key| state.jobs.get(key)).map_or(0, |job| job.since_ms);
+        batch.ended_ms = batch.ended_ms.max(last);
+    }
+}
+
+/// How a batch stands beside others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Share {
+    /// Name of the batch, at most 200 bytes of it; empty for all that are not listed.
+    pub name: String,
+    /// How urgent it is.
+    pub priority: Priority,
+    /// Scenarios that have not ended.
+    pub open: u32,
+    /// Scenarios of which a worker holds a job.
+    pub running: u32,
+}
+
+/// Batches that are not done, the newest [`SHARES`] of them, so that no figure grows with the work; the others together.
+#[must_use]
+pub fn shares(state: &State, now: Millis) -> Vec<Share> {
+    let share = |batch: BatchStatus| Share {
+        name: shortened(&batch.name, NAME_BYTES),
+        priority: batch.priority,
+        open: batch.total - batch.done,
+        running: batch.running,
+    };
+    let (batches, _) = batches(state, now);
+    let mut shares: Vec<Share> = batches.into_iter().filter(|batch| batch.done < batch.total).map(share).collect();
+    let others = shares.len().saturating_sub(SHARES);
+    let others: Vec<Share> = shares.drain(..others).collect();
+    if !others.is_empty() {
+        let (open, running) = others.iter().fold((0, 0), |sum, one| (sum.0 + one.open, sum.1 + one.running));
+        shares.push(Share { name: String::new(), priority: Priority::Normal, open, running });
+    }
+    shares
+}
+
+fn shortened(name: &str, bytes: usize) -> String {
+    let end = (0..=bytes.min(name.len())).rev().find(|at| name.is_char_boundary(*at)).unwrap_or(0);
+    name.split_at(end).0.to_owned()
+}
+
+/// How the circuit of a stage may stand.
+pub const CIRCUITS: [&str; 3] = ["closed", "open", "trying"];
+
+/// How the circuit of a stage stands, one of [`CIRCUITS`]: jobs are handed out, none are, or a single one is tried.
+#[must_use]
+pub fn circuit(state: &State, stage: Stage, now: Millis) -> &'static str {
+    match state.circuits.get(&stage).map(|circuit| circuit.allows(now)) {
+        None | Some(Allows::All) => "closed",
+        Some(Allows::NoneUntil(_)) => "open",
+        Some(Allows::One) => "trying",
+    }
 }
 
 /// Scenarios of which a worker holds a job, once each.
@@ -110,7 +182,9 @@ pub(crate) fn is_alive(state: &State, worker: &Worker, now: Millis) -> bool {
 /// The table of stages and workers at time `now`, ms.
 pub(crate) fn table(state: &State, now: Millis) -> Table {
     let mut workers: Vec<WorkerStatus> = Vec::new();
-    let alive = || state.workers.values().filter(|worker| is_alive(state, worker, now));
+    // One that has beaten since this orchestrator began, but did not say yet who it is, is introduced within a beat.
+    let known = |worker: &&Worker| is_alive(state, worker, now) && !worker.hello.stages.is_empty();
+    let alive = || state.workers.values().filter(known);
     let mut room = WORKER_BYTES;
     for worker in alive() {
         let status = WorkerStatus {

@@ -255,7 +255,10 @@ fn wait_words(wait: &Wait) -> String {
             format!("the rate of `{server}` is used up; it may be asked in {}", time(*in_ms))
         }
         Wait::Rests { in_ms } => {
-            format!("too many attempts of the stage failed in passing; one is tried in {}", time(*in_ms))
+            format!(
+                "the stage rests, since many of its attempts failed with trouble that may pass; one is tried in {}",
+                time(*in_ms)
+            )
         }
         Wait::Slots { most } => format!("{most} questions are put to authors at one time, as many as may be now"),
         Wait::Begun { most } => format!("{most} scenarios are under way, as many as may be; they are finished first"),
@@ -309,7 +312,7 @@ fn attempt_words(attempt: &Attempt, now_ms: u64) -> String {
 /// A class of failures in words.
 pub(crate) const fn class_words(class: FailureClass) -> &'static str {
     match class {
-        FailureClass::Transient => "passing trouble",
+        FailureClass::Transient => "trouble that may pass",
         FailureClass::Overload => "too much was asked of the server",
         FailureClass::Semantic => "a wrong answer",
         FailureClass::Unparsable => "an answer that cannot be read",

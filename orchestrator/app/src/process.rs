@@ -16,6 +16,7 @@ use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder;
 use crate::keys;
+use crate::logs;
 use crate::orchestrate::{self, OrchestratorConfig};
 use crate::output::Printer;
 
@@ -38,6 +39,8 @@ pub struct WorkerOptions {
     pub durable: bool,
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     pub inject: String,
+    /// File in which its log is kept, as JSON lines; none for nowhere.
+    pub log_file: Option<PathBuf>,
 }
 
 /// Options of the orchestrator process.
@@ -79,6 +82,9 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
     let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| {
         Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
     })?;
+    if let Some(file) = &options.log_file {
+        logs::keep(config, file);
+    }
     let shutdown = leave(options.tied);
     let (connect, namespace) = (&options.connect, &options.namespace);
     let bus = joined(config, Role::Worker, connect, namespace, &format!("worker-{stage}"), options.tied).await?;
@@ -208,6 +214,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
     if !options.tied {
         folder::of_one_machine(&options.dir)?;
     }
+    logs::keep(config, &logs::file(&options.dir, "orchestrator"));
     let metrics = match &options.metrics {
         Some(address) => Some(figures(talk, address, options.insecure).await?),
         None => None,

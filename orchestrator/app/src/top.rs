@@ -111,7 +111,7 @@ fn tokens(table: &Table) -> String {
         .tokens
         .values()
         .fold((0_u64, 0_u64), |(asked, answered), one| (asked.saturating_add(one.0), answered.saturating_add(one.1)));
-    format!("reign {} · tokens {asked} in, {answered} out", table.epoch)
+    format!("start {} of the orchestrator · since then {asked} tokens in, {answered} out", table.epoch)
 }
 
 fn time(ms: u64) -> String {
@@ -209,7 +209,7 @@ mod tests {
         let reply = StatusReply { total: 5, done: 2, table: Some(table), pace, ..StatusReply::default() };
         let sight = sight("tcp/x:1", &reply).unwrap();
         assert_eq!(sight.head[0], "tcp/x:1 · going on");
-        assert_eq!(sight.head[3], "reign 3 · tokens 11 in, 22 out");
+        assert_eq!(sight.head[3], "start 3 of the orchestrator · since then 11 tokens in, 22 out");
         assert_eq!(sight.stages[0].join("|"), "paths (paused)|1|4|2|0|0|0|0|0|3 s");
         assert_eq!(sight.workers[0].join("|"), "01234567|lab 7|paths|s-1/paths/r0 and 1 more|400 ms ago");
         assert_eq!(sight.workers[1][0], "and 2 more");

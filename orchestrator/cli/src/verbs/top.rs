@@ -150,7 +150,7 @@ fn draw(area: Rect, buffer: &mut Buffer, sight: &Sight, note: &str) {
         Constraint::Length(16),
     ];
     table(WORKER_HEADS, &sight.workers, "workers").widths(widths).render(workers, buffer);
-    let none = ["none since this reign began".to_owned()];
+    let none = ["none since this start of the orchestrator".to_owned()];
     let told = if sight.failures.is_empty() { &none[..] } else { &sight.failures[..] };
     let told: Vec<Line<'_>> = told.iter().map(|line| Line::from(line.as_str())).collect();
     Paragraph::new(told).block(titled("failures · q ends")).render(failures, buffer);
