@@ -12,7 +12,7 @@ use crate::state::{Job, Millis, ScenarioEnd, State, Worker};
 /// Bytes that the list of batches may take in a reply, estimated.
 pub(crate) const BATCH_BYTES: usize = 14 * 1024;
 /// Bytes that the workers of a table may take, estimated.
-const WORKER_BYTES: usize = 36 * 1024;
+const WORKER_BYTES: usize = 26 * 1024;
 /// Characters of the name of a machine that are told.
 const HOST_CHARS: usize = 64;
 /// Failures in a table at most, and characters of the text of each.
@@ -34,8 +34,8 @@ fn count(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
 }
 
-/// The batches in the order in which they were submitted, the newest where not all fit, and how many do not.
-pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
+/// Every batch, in the order in which they were submitted.
+fn every(state: &State, now: Millis) -> Vec<BatchStatus> {
     let mut order: Vec<&str> = Vec::new();
     let mut found: BTreeMap<&str, BatchStatus> = BTreeMap::new();
     for scenario in state.by_order.values().filter_map(|id| state.scenarios.get(id)) {
@@ -77,10 +77,16 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
             batch.running += 1;
         }
     }
+    order.into_iter().filter_map(|name| found.remove(name)).collect()
+}
+
+/// The batches in the order in which they were submitted, the newest where not all fit, and how many do not.
+pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
+    let all = every(state, now);
+    let total = all.len();
     let mut listed: Vec<BatchStatus> = Vec::new();
     let mut room = BATCH_BYTES;
-    for name in order.iter().rev() {
-        let Some(batch) = found.remove(name) else { continue };
+    for batch in all.into_iter().rev() {
         let size = 240 + batch.name.len() + batch.over.len();
         if size > room {
             break;
@@ -90,7 +96,7 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
     }
     listed.reverse();
     set_ends(state, &mut listed);
-    let left = order.len() - listed.len();
+    let left = total - listed.len();
     (listed, count(left))
 }
 
@@ -123,24 +129,21 @@ pub struct Share {
     pub running: u32,
 }
 
-/// Batches that are not done, the newest [`SHARES`] of them, so that no figure grows with the work; the others together.
+/// Batches that are not done, the newest [`SHARES`] of them, so that no figure grows with the work; the others together under an empty
+/// name. No two have the same name and priority.
 #[must_use]
 pub fn shares(state: &State, now: Millis) -> Vec<Share> {
-    let share = |batch: BatchStatus| Share {
-        name: shortened(&batch.name, NAME_BYTES),
-        priority: batch.priority,
-        open: batch.total - batch.done,
-        running: batch.running,
-    };
-    let (batches, _) = batches(state, now);
-    let mut shares: Vec<Share> = batches.into_iter().filter(|batch| batch.done < batch.total).map(share).collect();
-    let others = shares.len().saturating_sub(SHARES);
-    let others: Vec<Share> = shares.drain(..others).collect();
-    if !others.is_empty() {
-        let (open, running) = others.iter().fold((0, 0), |sum, one| (sum.0 + one.open, sum.1 + one.running));
-        shares.push(Share { name: String::new(), priority: Priority::Normal, open, running });
+    let open: Vec<BatchStatus> = every(state, now).into_iter().filter(|batch| batch.done < batch.total).collect();
+    let others = open.len().saturating_sub(SHARES);
+    let mut shares: BTreeMap<(String, Priority), (u32, u32)> = BTreeMap::new();
+    for (at, batch) in open.into_iter().enumerate() {
+        let listed = (shortened(&batch.name, NAME_BYTES), batch.priority);
+        let key = if at < others { (String::new(), Priority::Normal) } else { listed };
+        let sum = shares.entry(key).or_default();
+        *sum = (sum.0.saturating_add(batch.total - batch.done), sum.1.saturating_add(batch.running));
     }
-    shares
+    let share = |((name, priority), (open, running))| Share { name, priority, open, running };
+    shares.into_iter().map(share).collect()
 }
 
 fn shortened(name: &str, bytes: usize) -> String {

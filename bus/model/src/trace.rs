@@ -66,7 +66,7 @@ impl TraceContext {
 
 impl fmt::Display for TraceContext {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Sampled: whoever writes lines at all writes these.
+        // Sampled: a process that writes lines at all writes these.
         write!(f, "00-{:032x}-{:016x}-01", self.trace, self.span)
     }
 }

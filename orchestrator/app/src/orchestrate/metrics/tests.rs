@@ -4,6 +4,7 @@ use socrates_model::wire::{Acquire, Outcome, Report, ScenarioSpec, Submit};
 use socrates_model::{Digest, Fault, FaultCode};
 use socrates_orchestrator::{Answer, Effect, Event, Policy, step};
 
+use super::super::counts::Counts;
 use super::*;
 
 /// Labels with their values, in order.
@@ -169,9 +170,24 @@ fn state() -> State {
     state
 }
 
+/// A commit, an answer, a refusal and an artifact.
+fn counts() -> Counts {
+    let counts = Counts::new();
+    counts.committed(Duration::from_micros(300), 3);
+    counts.answered(socrates_link::keys::STATUS, Duration::from_micros(700));
+    counts.refused(socrates_link::keys::SUBMIT, Refusal::Busy);
+    let moved = socrates_kit::BlobMove { put: true, bytes: 70, whole: true, refused: false, took: Duration::ZERO };
+    counts.moved(moved);
+    counts.moved(socrates_kit::BlobMove { put: false, refused: true, whole: false, ..moved });
+    counts
+}
+
 #[test]
 fn a_collector_reads_every_figure_and_none_grows_with_the_work() {
-    let text = text(&state(), 5_000, &counts().now());
+    let mut state = state();
+    // A thousand tokens cost a thousandth of what a million do.
+    state.policy.prices = BTreeMap::from([("openai:a\"b\\c".to_owned(), (2_000_000, 10_000_000))]);
+    let text = text(&state, 5_000, &counts().now());
     let all = read(&text);
     let is = |name: &str, labels: &[(&str, &str)], wanted: f64| {
         let found = value(&all, name, labels);
@@ -187,12 +203,38 @@ fn a_collector_reads_every_figure_and_none_grows_with_the_work() {
     is("socrates_duplicate_reports_total", &[], 1.0);
     is("socrates_workers", &[("stage", "proposal"), ("state", "idle")], 1.0);
     is("socrates_llm_tokens_total", &[("model", "openai:a\"b\\c"), ("direction", "in")], 70.0);
+    is("socrates_llm_cost_total", &[("model", "openai:a\"b\\c")], 0.000_44);
+    is("socrates_rpc_duration_seconds_bucket", &[("method", "status"), ("le", "0.001")], 1.0);
+    is("socrates_rpc_duration_seconds_count", &[("method", "beat")], 0.0);
+    is("socrates_rpc_refusals_total", &[("method", "submit"), ("reason", "busy")], 1.0);
+    is("socrates_rpc_refusals_total", &[("method", "blob_get"), ("reason", "refused")], 1.0);
+    is("socrates_rpc_refusals_total", &[("method", "report"), ("reason", "unreadable")], 0.0);
+    is("socrates_blob_bytes_total", &[("op", "put")], 70.0);
+    is("socrates_blobs_total", &[("op", "put")], 1.0);
+    is("socrates_blobs_total", &[("op", "get")], 0.0);
+    is("socrates_circuit", &[("stage", "paths"), ("state", "closed")], 1.0);
+    is("socrates_batch_open", &[("batch", "b"), ("priority", "normal")], 1.0);
+    is("socrates_batch_running", &[("batch", "b")], 0.0);
     is("socrates_commit_duration_seconds_bucket", &[("le", "0.0005")], 1.0);
     is("socrates_commit_batch_size_sum", &[], 3.0);
     is("socrates_dead_letters", &[("stage", "proposal")], 0.0);
     is("socrates_build_info", &[("version", "9")], 1.0);
     for (name, labels, _) in &all {
-        let known = ["stage", "state", "outcome", "class", "le", "model", "direction", "version"];
+        let known = [
+            "stage",
+            "state",
+            "outcome",
+            "class",
+            "le",
+            "model",
+            "direction",
+            "version",
+            "method",
+            "reason",
+            "op",
+            "batch",
+            "priority",
+        ];
         assert!(labels.iter().all(|(label, _)| known.contains(&label.as_str())), "{name} {labels:?}");
     }
 }
