@@ -89,7 +89,8 @@ impl Visit for Fields {
 /// A line: what everybody looks for first, then the fields by name.
 fn line(event: &Event<'_>, mut fields: Map<String, Value>) -> String {
     let meta = event.metadata();
-    let message = fields.remove("message").unwrap_or_default();
+    // Libraries also say things by fields alone.
+    let message = fields.remove("message").unwrap_or_else(|| Value::from(""));
     let process = logs::process();
     let head = [
         ("ts", Value::from(logs::stamp(logs::now_ms()))),
