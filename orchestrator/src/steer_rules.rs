@@ -247,6 +247,7 @@ fn every_attempt_says_its_trace_and_says_the_same_after_a_restart() {
     assert_eq!(first.traceparent, Some(trace.of_attempt(&first.spec.key, 1)));
     world.fail(&first, FailureClass::Semantic, vec![fault(FaultCode::PCount, "one too many")]);
     world.state = State::restore(replay(&world.rows), Policy::default(), world.now);
+    world.send(|_| Event::Recover { alone: false });
     world.now += 60_000;
     world.send(|_| Event::Tick);
     let again = world.grants("w", Stage::Proposal);

@@ -418,7 +418,7 @@ mod tests {
         }
     }
 
-    #[tokio::test]
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     #[cfg(feature = "zenoh")]
     async fn where_nobody_is_there_it_is_said_soon_and_what_was_tried() {
         let config = Config::load(None, std::iter::empty(), &[]).unwrap();
