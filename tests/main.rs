@@ -6,6 +6,7 @@ mod foreign;
 mod golden;
 mod life;
 
+use std::io::{Read as _, Write as _};
 use std::path::Path;
 
 use socrates_tests::program::{Finished, run};
@@ -28,6 +29,16 @@ pub(crate) fn make(folder: &Path, name: &str, request: &str, more: &[&str]) -> (
     let finished = socrates(folder, name, &args);
     let json = finished.json();
     (finished, json)
+}
+
+/// The figures at the address that `cluster up` printed.
+pub(crate) fn figures(up: &str) -> Option<String> {
+    let (_, rest) = up.split_once("metrics    http://")?;
+    let mut stream = std::net::TcpStream::connect(rest.split_once("/metrics")?.0).ok()?;
+    stream.write_all(b"GET /metrics HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n").ok()?;
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).ok()?;
+    Some(answer)
 }
 
 /// A request for three people in the warehouse.

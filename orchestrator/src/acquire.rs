@@ -245,6 +245,7 @@ impl Turn<'_> {
             deadline_ms: self.state.policy.deadline_ms(key.stage),
             idem_key: job.idem_key?,
             inline: BTreeMap::new(),
+            traceparent: self.scenario(&key.scenario).map(|scenario| scenario.trace().of_attempt(key, number)),
         })
     }
 }

@@ -174,6 +174,10 @@ impl Turn<'_> {
         if !paused && *part != Part::All && self.is_paused(&Part::All) {
             leaves.add("everything is held back; resuming everything lets it go on", name);
         }
+        if !paused && *part == Part::All && self.state.paused.is_empty() && self.state.paused_stages.is_empty() {
+            leaves.add("nothing was held back", name);
+            return Steered { left: leaves.told(), ..Steered::default() };
+        }
         let batch = if let Part::Batch(batch) = part { batch.as_str() } else { "" };
         match (part, paused) {
             // Everything goes on: whatever was held back by itself, too.

@@ -21,6 +21,7 @@ pub mod pipeline;
 pub mod policy;
 pub mod state;
 pub mod tally;
+mod trace;
 
 mod turn;
 

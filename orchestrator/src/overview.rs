@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 
 use socrates_model::job::Stage;
-use socrates_model::wire::{BatchStatus, Failed, Limits, Part, StageStatus, Table, WorkerStatus};
+use socrates_model::wire::{BatchStatus, Failed, Limits, Part, Priority, StageStatus, Table, WorkerStatus};
 
+use crate::circuit::Allows;
 use crate::pace::Pacer;
 use crate::state::{Job, Millis, ScenarioEnd, State, Worker};
 
 /// Bytes that the list of batches may take in a reply, estimated.
 pub(crate) const BATCH_BYTES: usize = 14 * 1024;
 /// Bytes that the workers of a table may take, estimated.
-const WORKER_BYTES: usize = 36 * 1024;
+const WORKER_BYTES: usize = 26 * 1024;
 /// Characters of the name of a machine that are told.
 const HOST_CHARS: usize = 64;
 /// Failures in a table at most, and characters of the text of each.
@@ -20,6 +21,8 @@ const FAULT_CHARS: usize = 200;
 /// Paused batches that are told, at most, and bytes of the name of each.
 const PAUSED: usize = 20;
 const NAME_BYTES: usize = 200;
+/// Batches whose shares are told by name, at most.
+const SHARES: usize = 32;
 /// Ready jobs of a stage that are looked at for the one that has waited the longest, oldest scenarios first.
 const LOOKED_AT: usize = 1_000;
 
@@ -31,8 +34,8 @@ fn count(n: usize) -> u32 {
     u32::try_from(n).unwrap_or(u32::MAX)
 }
 
-/// The batches in the order in which they were submitted, the newest where not all fit, and how many do not.
-pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
+/// Every batch, in the order in which they were submitted.
+fn every(state: &State, now: Millis) -> Vec<BatchStatus> {
     let mut order: Vec<&str> = Vec::new();
     let mut found: BTreeMap<&str, BatchStatus> = BTreeMap::new();
     for scenario in state.by_order.values().filter_map(|id| state.scenarios.get(id)) {
@@ -47,6 +50,7 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
                 limits: own.limits,
                 taken: if own.limits.are_none() { Limits::default() } else { own.taken() },
                 over: own.over,
+                priority: scenario.priority,
                 pace: state.paces.get(name).map_or_else(|| Pacer::default().told(now), |pacer| pacer.told(now)),
                 ..BatchStatus::default()
             }
@@ -73,10 +77,16 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
             batch.running += 1;
         }
     }
+    order.into_iter().filter_map(|name| found.remove(name)).collect()
+}
+
+/// The batches in the order in which they were submitted, the newest where not all fit, and how many do not.
+pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
+    let all = every(state, now);
+    let total = all.len();
     let mut listed: Vec<BatchStatus> = Vec::new();
     let mut room = BATCH_BYTES;
-    for name in order.iter().rev() {
-        let Some(batch) = found.remove(name) else { continue };
+    for batch in all.into_iter().rev() {
         let size = 240 + batch.name.len() + batch.over.len();
         if size > room {
             break;
@@ -85,8 +95,73 @@ pub(crate) fn batches(state: &State, now: Millis) -> (Vec<BatchStatus>, u32) {
         listed.push(batch);
     }
     listed.reverse();
-    let left = order.len() - listed.len();
+    set_ends(state, &mut listed);
+    let left = total - listed.len();
     (listed, count(left))
+}
+
+/// Says of batches that are done when the last of it ended.
+fn set_ends(state: &State, batches: &mut [BatchStatus]) {
+    let is_done = |batch: &&mut BatchStatus| batch.done == batch.total;
+    let mut done: BTreeMap<String, &mut BatchStatus> =
+        batches.iter_mut().filter(is_done).map(|batch| (batch.name.clone(), batch)).collect();
+    if done.is_empty() {
+        return;
+    }
+    for scenario in state.scenarios.values() {
+        let Some(batch) = done.get_mut(&scenario.batch) else { continue };
+        // What was made last of a scenario is what ended it.
+        let last = scenario.jobs.last().and_then(|key| state.jobs.get(key)).map_or(0, |job| job.since_ms);
+        batch.ended_ms = batch.ended_ms.max(last);
+    }
+}
+
+/// How a batch stands beside others.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Share {
+    /// Name of the batch, at most 200 bytes of it; empty for all that are not listed.
+    pub name: String,
+    /// How urgent it is.
+    pub priority: Priority,
+    /// Scenarios that have not ended.
+    pub open: u32,
+    /// Scenarios of which a worker holds a job.
+    pub running: u32,
+}
+
+/// Batches that are not done, the newest [`SHARES`] of them, so that no figure grows with the work; the others together under an empty
+/// name. No two have the same name and priority.
+#[must_use]
+pub fn shares(state: &State, now: Millis) -> Vec<Share> {
+    let open: Vec<BatchStatus> = every(state, now).into_iter().filter(|batch| batch.done < batch.total).collect();
+    let others = open.len().saturating_sub(SHARES);
+    let mut shares: BTreeMap<(String, Priority), (u32, u32)> = BTreeMap::new();
+    for (at, batch) in open.into_iter().enumerate() {
+        let listed = (shortened(&batch.name, NAME_BYTES), batch.priority);
+        let key = if at < others { (String::new(), Priority::Normal) } else { listed };
+        let sum = shares.entry(key).or_default();
+        *sum = (sum.0.saturating_add(batch.total - batch.done), sum.1.saturating_add(batch.running));
+    }
+    let share = |((name, priority), (open, running))| Share { name, priority, open, running };
+    shares.into_iter().map(share).collect()
+}
+
+fn shortened(name: &str, bytes: usize) -> String {
+    let end = (0..=bytes.min(name.len())).rev().find(|at| name.is_char_boundary(*at)).unwrap_or(0);
+    name.split_at(end).0.to_owned()
+}
+
+/// How the circuit of a stage may stand.
+pub const CIRCUITS: [&str; 3] = ["closed", "open", "trying"];
+
+/// How the circuit of a stage stands, one of [`CIRCUITS`]: jobs are handed out, none are, or a single one is tried.
+#[must_use]
+pub fn circuit(state: &State, stage: Stage, now: Millis) -> &'static str {
+    match state.circuits.get(&stage).map(|circuit| circuit.allows(now)) {
+        None | Some(Allows::All) => "closed",
+        Some(Allows::NoneUntil(_)) => "open",
+        Some(Allows::One) => "trying",
+    }
 }
 
 /// Scenarios of which a worker holds a job, once each.
@@ -110,7 +185,9 @@ pub(crate) fn is_alive(state: &State, worker: &Worker, now: Millis) -> bool {
 /// The table of stages and workers at time `now`, ms.
 pub(crate) fn table(state: &State, now: Millis) -> Table {
     let mut workers: Vec<WorkerStatus> = Vec::new();
-    let alive = || state.workers.values().filter(|worker| is_alive(state, worker, now));
+    // One that has beaten since this orchestrator began, but did not say yet who it is, is introduced within a beat.
+    let known = |worker: &&Worker| is_alive(state, worker, now) && !worker.hello.stages.is_empty();
+    let alive = || state.workers.values().filter(known);
     let mut room = WORKER_BYTES;
     for worker in alive() {
         let status = WorkerStatus {

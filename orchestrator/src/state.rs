@@ -7,7 +7,7 @@ use socrates_model::fault::FailureClass;
 use socrates_model::job::{Artifact, Item, JobKey, JobSpec, Look, Stage};
 use socrates_model::report::{Repair, Verdict};
 pub use socrates_model::standing::{JobState, ScenarioEnd};
-use socrates_model::wire::{Hello, ScenarioSpec};
+use socrates_model::wire::{Hello, Priority, ScenarioSpec};
 use socrates_model::{Digest, Fault, Role, ScenarioId};
 
 use crate::batches::{Batch, Queue};
@@ -256,6 +256,9 @@ pub struct Scenario {
     /// Wall time at which it was submitted, ms since 1970, for people; 0 where it is not known.
     #[serde(default)]
     pub since_ms: u64,
+    /// How urgent its batch is.
+    #[serde(default)]
+    pub priority: Priority,
     /// Jobs in order of their making.
     #[serde(skip)]
     pub jobs: Vec<JobKey>,

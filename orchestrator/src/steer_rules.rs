@@ -3,8 +3,8 @@
 use socrates_model::fault::{FailureClass, FaultCode};
 use socrates_model::job::Stage;
 use socrates_model::wire::{
-    Acquired, Chosen, Control, Hello, JobAsk, NoWork, Pace, Part, Priority, StatusAsk, Steer, Steered, Submit, Wait,
-    Welcome,
+    Acquired, Beat, Chosen, Control, Hello, JobAsk, NoWork, Pace, Part, Priority, StatusAsk, Steer, Steered, Submit,
+    Wait, Welcome,
 };
 
 use crate::histories::replay;
@@ -207,6 +207,71 @@ fn batches_are_listed_with_their_pace_and_an_idle_night_does_not_count() {
 }
 
 #[test]
+fn a_batch_that_is_done_took_its_time_and_keeps_its_priority_over_a_restart() {
+    let mut world = World::new();
+    world.state.clock_ms = 1_000_000;
+    let submit = Submit::new("night", Priority::Bulk, vec![spec("n1")]);
+    world.send(|to| Event::Submit { submit, to });
+    let told = |world: &World| {
+        let batch = status(&world.state, &StatusAsk::default(), world.now).batches.remove(0);
+        (batch.priority, batch.since_ms, batch.ended_ms)
+    };
+    let began = 1_000_000 + world.now;
+    assert_eq!(told(&world), (Priority::Bulk, began, 0), "what is open has not ended");
+    let grant = world.grant("w", Stage::Proposal);
+    world.now += 10_000;
+    world.fail(&grant, FailureClass::Permanent, Vec::new());
+    let ended = 1_000_000 + world.now;
+    world.now += 3_600_000;
+    assert_eq!(told(&world), (Priority::Bulk, began, ended));
+    world.state = State::restore(replay(&world.rows), Policy::default(), world.now);
+    assert_eq!(told(&world), (Priority::Bulk, began, ended));
+}
+
+#[test]
+fn resuming_where_nothing_is_held_back_says_so_and_touches_no_job() {
+    let mut world = two_batches();
+    let steered = steer(&mut world, Steer::Resume(Part::All));
+    assert_eq!(left(&steered), ["1 everything: nothing was held back"]);
+    assert_eq!((steered.scenarios, steered.jobs, steered.held), (0, 0, 0));
+    steer(&mut world, Steer::Pause(Part::Stage(Stage::Paths)));
+    let steered = steer(&mut world, Steer::Resume(Part::All));
+    assert!(steered.left.is_empty() && steered.jobs > 0, "{steered:?}");
+}
+
+#[test]
+fn every_attempt_says_its_trace_and_says_the_same_after_a_restart() {
+    let mut world = two_batches();
+    let first = world.grant("w", Stage::Proposal);
+    let trace = world.state.scenarios[&first.spec.key.scenario].trace();
+    assert_eq!(first.traceparent, Some(trace.of_attempt(&first.spec.key, 1)));
+    world.fail(&first, FailureClass::Semantic, vec![fault(FaultCode::PCount, "one too many")]);
+    world.state = State::restore(replay(&world.rows), Policy::default(), world.now);
+    world.send(|_| Event::Recover { alone: false });
+    world.now += 60_000;
+    world.send(|_| Event::Tick);
+    let again = world.grants("w", Stage::Proposal);
+    let again = again.iter().find(|grant| grant.spec.key == first.spec.key).unwrap();
+    assert_eq!((again.attempt, again.traceparent), (2, Some(trace.of_attempt(&first.spec.key, 2))));
+}
+
+#[test]
+fn a_worker_that_did_not_say_who_it_is_since_a_restart_is_not_listed() {
+    let mut world = two_batches();
+    let beat = Beat { instance: "ghost".to_owned(), held: Vec::new(), draining: false };
+    world.send(|to| Event::Beat { beat, to });
+    let table = |world: &World| {
+        let ask = StatusAsk { table: true, ..StatusAsk::default() };
+        status(&world.state, &ask, world.now)
+    };
+    let reply = table(&world);
+    assert_eq!(reply.table.as_ref().unwrap().workers.len(), 0, "{reply:?}");
+    assert_eq!(reply.batches.len(), 2, "the table comes with the batches");
+    world.grant("ghost", Stage::Proposal);
+    assert_eq!(table(&world).table.unwrap().workers.len(), 1);
+}
+
+#[test]
 fn the_table_tells_of_stages_workers_and_failures() {
     let mut world = two_batches();
     let grant = world.grant("w", Stage::Proposal);
@@ -247,6 +312,10 @@ fn a_table_of_many_workers_and_a_list_of_many_batches_fit_a_message() {
     assert!(reply.batches.len() > 20 && reply.batches_left == 300 - u32::try_from(reply.batches.len()).unwrap());
     assert_eq!(reply.batches.last().unwrap().total, 1);
     assert!(reply.batches.last().unwrap().name.starts_with("batch-299"), "the newest are listed");
+    let shares = crate::overview::shares(&world.state, world.now);
+    let named = shares.iter().filter(|share| !share.name.is_empty());
+    assert!(named.clone().count() == 32 && named.clone().any(|share| share.name.starts_with("batch-299")));
+    assert_eq!((shares.len(), shares.iter().map(|share| share.open).sum::<u32>()), (33, 300), "none is left out");
     let reply = status(&world.state, &StatusAsk { table: true, ..StatusAsk::default() }, world.now);
     let table = reply.table.as_ref().unwrap();
     assert!(fits(&reply) && u32::try_from(table.workers.len()).unwrap() + table.workers_left == 300, "{table:?}");

@@ -145,7 +145,8 @@ impl Turn<'_> {
         let stages = pipeline::authored(&spec);
         let lead = pipeline::lead(&spec);
         let turn = self.state.take_turn(batch, priority);
-        let scenario = Scenario { since_ms: self.state.wall_ms(self.now), ..Scenario::new(batch, order, turn, spec) };
+        let scenario =
+            Scenario { since_ms: self.state.wall_ms(self.now), priority, ..Scenario::new(batch, order, turn, spec) };
         self.state.scenarios.insert(id.clone(), scenario);
         self.state.by_order.insert(order, id.clone());
         self.scenario_mut(&id);
@@ -366,6 +367,7 @@ impl Scenario {
             end: None,
             started: false,
             since_ms: 0,
+            priority: Priority::Normal,
             jobs: Vec::new(),
             open: 0,
         }

@@ -11,11 +11,11 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 use serde_json::Value;
-use socrates_tests::program::run;
+use socrates_tests::program::{finish, poll, run, signal, start};
 use socrates_tests::{root, skip};
 
 use super::python::python;
-use crate::{PROGRAM, WAREHOUSE};
+use crate::{PROGRAM, WAREHOUSE, figures};
 
 const PACKAGES: [&str; 6] = [
     "check-jsonschema==0.39.0",
@@ -239,7 +239,7 @@ fn promtool_takes_the_alerts_and_raises_each_on_the_figures_that_are_meant() {
     let folder = tempfile::tempdir().unwrap();
     let rules = deployed("prometheus/socrates.rules.yml");
     let (code, told) = said("promtool", &["check", "rules", &rules.display().to_string()], folder.path());
-    assert!(code == 0 && told.contains("SUCCESS: 7 rules found"), "{told}");
+    assert!(code == 0 && told.contains("SUCCESS: 8 rules found"), "{told}");
     let elsewhere = tempfile::tempdir().unwrap();
     let (code, told) =
         said("promtool", &["check", "rules", &misspelt(&rules, "expr:", "exp:", elsewhere.path())], folder.path());
@@ -255,6 +255,30 @@ fn promtool_takes_the_alerts_and_raises_each_on_the_figures_that_are_meant() {
     // An alert that is never raised is noticed.
     let (code, told) = raised(text.replace("> 600", "> 600000"));
     assert!(code != 0 && told.contains("SocratesJobsWaitThoughWorkersAreFree"), "{told}");
+}
+
+#[test]
+fn promtool_reads_every_figure_of_an_orchestrator_and_has_nothing_to_say() {
+    if !has("promtool") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let listen = format!("unixsock-stream/{}", at.join("bus").display());
+    let up = ["cluster", "up", "--dir", "jobs", "--listen", &listen, "--metrics", "127.0.0.1:0"];
+    let up = start(PROGRAM, &up, at, "up").unwrap();
+    let told = poll(|| figures(&std::fs::read_to_string(at.join("up.err")).ok()?)).unwrap();
+    assert!(signal(up.id(), "TERM").unwrap());
+    assert_eq!(finish(up, at, "up").unwrap().code, 0);
+    let (_, text) = told.split_once("\r\n\r\n").unwrap();
+    assert!(text.contains("socrates_rpc_duration_seconds_bucket"), "{text}");
+    let check = |text: String| {
+        std::fs::write(at.join("figures.txt"), text).unwrap();
+        said("sh", &["-c", "promtool check metrics < figures.txt"], at)
+    };
+    assert_eq!(check(text.to_owned()), (0, String::new()));
+    let (code, told) = check(text.replace("# HELP socrates_workers ", "# HELB socrates_workers "));
+    assert!(code != 0 && told.contains("socrates_workers"), "{told}");
 }
 
 #[test]

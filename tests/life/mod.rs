@@ -18,6 +18,7 @@ mod leaving;
 mod libraries;
 mod live;
 mod no_ways;
+mod observing;
 mod originals;
 mod pages;
 mod readme;

@@ -1,11 +1,10 @@
 //! A cluster as somebody meets it who asks why nothing happens: how it stands, why jobs wait, what can be done, and figures.
 
-use std::io::{Read as _, Write as _};
 use std::path::Path;
 
 use socrates_tests::program::{Finished, finish, naming, poll, signal, start};
 
-use crate::{PROGRAM, WAREHOUSE, socrates};
+use crate::{PROGRAM, WAREHOUSE, figures, socrates};
 
 /// An orchestrator without workers that was handed a batch of four scenarios.
 struct Site<'a> {
@@ -28,16 +27,6 @@ impl Site<'_> {
         assert_eq!(told.code, 0, "{}", told.err);
         told.out
     }
-}
-
-/// The figures at the address that `cluster up` printed.
-fn figures(up: &str) -> Option<String> {
-    let (_, rest) = up.split_once("metrics    http://")?;
-    let mut stream = std::net::TcpStream::connect(rest.split_once("/metrics")?.0).ok()?;
-    stream.write_all(b"GET /metrics HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n").ok()?;
-    let mut answer = String::new();
-    stream.read_to_string(&mut answer).ok()?;
-    Some(answer)
 }
 
 #[test]
@@ -68,6 +57,8 @@ fn a_cluster_says_why_jobs_wait_and_does_what_it_is_told() {
     let unknown = site.ask(&["explain", "nobody", "--connect", &endpoint]);
     assert!(unknown.code == 2 && unknown.err.contains(&names[0]), "{}", unknown.err);
 
+    let unpaused = site.steer(&["resume"]);
+    assert!(unpaused.code == 0 && unpaused.out.contains("everything: nothing was held back"), "{}", unpaused.out);
     // What is paused stays so, and says so.
     assert!(site.steer(&["pause", "proposal"]).out.contains("paused     stage proposal: 4 jobs of 4 scenarios wait"));
     assert!(site.explain(&format!("{}/proposal", names[0])).contains("stage proposal is paused"));
@@ -98,8 +89,28 @@ fn a_cluster_says_why_jobs_wait_and_does_what_it_is_told() {
     let table = site.ask(&["--format", "json", "top", &endpoint]).json();
     assert_eq!(table["table"]["workers"].as_array().map(Vec::len), Some(5), "{table}");
     let told = figures(&std::fs::read_to_string(at.join("up.err")).unwrap()).unwrap();
-    for line in ["socrates_jobs{stage=\"scoring\",state=\"canceled\"} 1", "socrates_scenarios{state=\"ended\"} 4"] {
+    let wanted = [
+        "socrates_jobs{stage=\"scoring\",state=\"canceled\"} 1",
+        "socrates_scenarios{state=\"ended\"} 4",
+        "socrates_rpc_refusals_total{method=\"submit\",reason=\"refused\"} 0",
+        "socrates_circuit{stage=\"paths\",state=\"closed\"} 1",
+    ];
+    for line in wanted {
         assert!(told.lines().any(|found| found == line), "no `{line}` in {told}");
+    }
+    // Workers of a cluster take and bring artifacts over the bus.
+    let counted = |name: &str| {
+        let line =
+            told.lines().find_map(|line| line.strip_prefix(name)).unwrap_or_else(|| panic!("no `{name}` in {told}"));
+        line.trim().parse::<u64>().unwrap()
+    };
+    for name in [
+        "socrates_blob_bytes_total{op=\"get\"}",
+        "socrates_blobs_total{op=\"put\"}",
+        "socrates_rpc_duration_seconds_count{method=\"acquire\"}",
+        "socrates_rpc_duration_seconds_count{method=\"blob_put\"}",
+    ] {
+        assert!(counted(name) > 0, "{name}");
     }
 
     for (child, name) in [(work, "work"), (up, "up")] {

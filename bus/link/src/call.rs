@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use socrates_model::TraceContext;
 
 use crate::bus::Bus;
 use crate::envelope::{Envelope, decode, encode};
@@ -30,10 +31,10 @@ pub async fn call<Req: Serialize + Sync, Rep: DeserializeOwned>(
     request: &Req,
     timeout: Duration,
 ) -> Result<Rep, LinkError> {
-    Ok(call_envelope(bus, key, kind, request, timeout).await?.body)
+    Ok(call_envelope(bus, key, kind, request, None, timeout).await?.body)
 }
 
-/// As [`call`], with the whole envelope of the reply: its epoch tells a stale orchestrator.
+/// As [`call`], as a part of a trace, with the whole envelope of the reply: its epoch tells a stale orchestrator.
 ///
 /// # Errors
 /// As [`call`].
@@ -42,9 +43,10 @@ pub async fn call_envelope<Req: Serialize + Sync, Rep: DeserializeOwned>(
     key: &str,
     kind: &str,
     request: &Req,
+    trace: Option<TraceContext>,
     timeout: Duration,
 ) -> Result<Envelope<Rep>, LinkError> {
-    let body = encode(&Envelope::fresh(kind, bus.name(), 0, request))?;
+    let body = encode(&Envelope::fresh(kind, bus.name(), 0, request).in_trace(trace))?;
     let reply = bus.query(key, body, timeout).await?;
     decode(kind, &reply)
 }

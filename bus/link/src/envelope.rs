@@ -5,6 +5,7 @@
 
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
+use socrates_model::TraceContext;
 use socrates_model::job::MESSAGE_BYTES;
 
 use crate::error::LinkError;
@@ -41,6 +42,9 @@ pub struct Envelope<T> {
     /// Wall time of the writer, ms since 1970; shown, never decides.
     #[serde(default)]
     pub sent_ms: u64,
+    /// Where the message belongs in the trace of a scenario, for logs; none where it is of no job. Older readers pass over it.
+    #[serde(default, deserialize_with = "socrates_model::trace::lenient", skip_serializing_if = "Option::is_none")]
+    pub traceparent: Option<TraceContext>,
     /// The message.
     pub body: T,
 }
@@ -50,6 +54,12 @@ impl<T> Envelope<T> {
     #[must_use]
     pub fn for_readers_of(self, version: u32) -> Self {
         Self { min_v: version, ..self }
+    }
+
+    /// The same as a part of this trace.
+    #[must_use]
+    pub fn in_trace(self, traceparent: Option<TraceContext>) -> Self {
+        Self { traceparent, ..self }
     }
 
     /// An envelope of this version with a fresh id; its time is the id's own.
@@ -65,6 +75,7 @@ impl<T> Envelope<T> {
             sender: sender.to_owned(),
             epoch,
             sent_ms,
+            traceparent: None,
             body,
         }
     }
@@ -151,6 +162,7 @@ mod tests {
             sender: "w".into(),
             epoch: 3,
             sent_ms: 1000,
+            traceparent: None,
             body: Acquire {
                 req_id: "r1".into(),
                 instance: "i1".into(),
@@ -191,6 +203,30 @@ mod tests {
         let bytes = rmp_serde::to_vec_named(&Newer { v: 1, kind: "n", body: 7, color: vec![(1, "x")] }).unwrap();
         let read = decode::<u32>("n", &bytes).unwrap();
         assert_eq!((read.body, read.epoch, read.sender.as_str()), (7, 0, ""));
+    }
+
+    #[test]
+    fn a_trace_travels_and_what_is_none_costs_no_message() {
+        let parent: TraceContext = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01".parse().unwrap();
+        let traced = sample().in_trace(Some(parent));
+        let bytes = encode(&traced).unwrap();
+        assert_eq!(decode::<Acquire>("acquire", &bytes).unwrap(), traced);
+        // A reader of before has no such field.
+        #[derive(serde::Deserialize)]
+        struct Before {
+            body: Acquire,
+        }
+        assert_eq!(rmp_serde::from_slice::<Before>(&bytes).unwrap().body, sample().body);
+        #[derive(Serialize)]
+        struct Strange {
+            v: u32,
+            kind: &'static str,
+            traceparent: &'static str,
+            body: u32,
+        }
+        let strange = Strange { v: 3, kind: "n", traceparent: "of another kind", body: 7 };
+        let read = decode::<u32>("n", &rmp_serde::to_vec_named(&strange).unwrap()).unwrap();
+        assert_eq!((read.body, read.traceparent), (7, None));
     }
 
     #[test]

@@ -55,6 +55,7 @@ pub mod schema;
 pub mod signature;
 pub mod standing;
 pub mod statement;
+pub mod trace;
 pub mod wire;
 pub mod words;
 
@@ -90,6 +91,7 @@ pub use signature::Signature;
 pub use standing::{JobState, ScenarioEnd};
 pub use statement::Statement;
 pub use time::SimTime;
+pub use trace::TraceContext;
 
 /// Format number written into every artifact. A reader refuses a larger one.
 pub const FORMAT: u32 = 1;

@@ -3,6 +3,7 @@
 //! Bodies only; the envelope and its encoding live in `link`. Unknown fields are ignored and new
 //! fields have defaults, so that neighbors one version apart understand each other.
 
+mod byte_text;
 mod overview;
 mod steer;
 mod submit;
@@ -18,6 +19,7 @@ use crate::ids::ScenarioId;
 use crate::job::{Artifact, JobKey, JobSpec, Stage};
 pub use crate::priority::Priority;
 use crate::standing::{JobState, ScenarioEnd};
+use crate::trace::TraceContext;
 
 pub use overview::{BatchStatus, Failed, Pace, StageStatus, Table, WorkerStatus};
 pub use steer::{Chosen, Left, Part, Steer, Steered};
@@ -94,6 +96,9 @@ pub struct Grant {
     /// Small inputs, by content address.
     #[serde(default)]
     pub inline: BTreeMap<Digest, String>,
+    /// Where the attempt stands in the trace of its scenario, for logs. Older readers pass over it.
+    #[serde(default, deserialize_with = "crate::trace::lenient", skip_serializing_if = "Option::is_none")]
+    pub traceparent: Option<TraceContext>,
 }
 
 /// Why there is no work.
@@ -497,38 +502,4 @@ pub struct BlobPut {
     /// The bytes.
     #[serde(with = "byte_text")]
     pub bytes: Vec<u8>,
-}
-
-/// Bytes as MessagePack `bin`, not as a list of numbers.
-mod byte_text {
-    use serde::de::{Error, SeqAccess, Visitor};
-    use serde::{Deserializer, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(bytes: &[u8], out: S) -> Result<S::Ok, S::Error> {
-        out.serialize_bytes(bytes)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Vec<u8>, D::Error> {
-        struct Bytes;
-        impl<'de> Visitor<'de> for Bytes {
-            type Value = Vec<u8>;
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("bytes")
-            }
-            fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<u8>, E> {
-                Ok(bytes.to_vec())
-            }
-            fn visit_byte_buf<E: Error>(self, bytes: Vec<u8>) -> Result<Vec<u8>, E> {
-                Ok(bytes)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<u8>, A::Error> {
-                let mut bytes = Vec::new();
-                while let Some(byte) = seq.next_element()? {
-                    bytes.push(byte);
-                }
-                Ok(bytes)
-            }
-        }
-        input.deserialize_byte_buf(Bytes)
-    }
 }

@@ -86,6 +86,11 @@ pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Complaint> {
     ])
 }
 
+/// Every key that this process knows. One whose file cannot be used is told by whoever needs it.
+pub(crate) fn secrets(config: &Config) -> Vec<ApiKey> {
+    Dialect::ALL.into_iter().filter_map(|dialect| key(config, &part(dialect)).ok().flatten()).collect()
+}
+
 /// Whether a key for Chat Completions is there, which `auto` looks for.
 pub(crate) fn key_found(config: &Config) -> Result<bool, Complaint> {
     Ok(key(config, &part(Dialect::OpenAi))?.is_some())

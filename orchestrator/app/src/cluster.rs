@@ -22,6 +22,9 @@ use crate::wanted::drawn;
 use crate::words::plural;
 use crate::{calls, process, variants};
 
+/// Problems of requests that are told one by one, at most.
+const PROBLEMS: usize = 20;
+
 /// Where scenarios are submitted.
 #[derive(Debug, Clone)]
 pub struct SubmitOptions {
@@ -101,6 +104,14 @@ pub async fn submit(
             known => format!(" · {known} of them were there already"),
         }
     ));
+    let problems = problems(&prepared);
+    for (name, problem) in problems.iter().take(PROBLEMS) {
+        talk.line(&format!("problem    {name}: {problem}"));
+    }
+    match problems.len().saturating_sub(PROBLEMS) {
+        0 => {}
+        more => talk.line(&format!("problem    and {more} more; `socrates read REQUEST` shows those of a request")),
+    }
     let keys = match config.text(crate::keys::SETTING) {
         folder if folder.is_empty() => String::new(),
         folder => format!(" --keys {}", shell(std::path::Path::new(&folder))),
@@ -112,8 +123,18 @@ pub async fn submit(
         to.connect
     ));
     let refusals: Vec<_> = refused.iter().map(Refused::object).collect();
-    talk.result(&json!({ "submitted": count, "new": fresh, "batch": batch, "refused": refusals }));
+    let problems: Vec<_> =
+        problems.iter().map(|(name, problem)| json!({ "request": name, "problem": problem })).collect();
+    talk.result(
+        &json!({ "submitted": count, "new": fresh, "batch": batch, "refused": refusals, "problems": problems }),
+    );
     Ok(if refused.is_empty() { Code::Ok } else { Code::Input })
+}
+
+/// Wishes that cannot be played, and what else the reading of a request warns of, each with the name of the request.
+fn problems(prepared: &[Prepared]) -> Vec<(&str, String)> {
+    let of = |one: &'_ Prepared| one.reading.problems.iter().map(ToString::to_string).collect::<Vec<_>>();
+    prepared.iter().flat_map(|one| of(one).into_iter().map(|problem| (one.name.as_str(), problem))).collect()
 }
 
 /// Refuses options that are for runs on this machine.

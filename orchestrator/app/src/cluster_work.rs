@@ -13,6 +13,7 @@ use crate::config::Config;
 use crate::crew::{Crew, Member};
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
+use crate::logs;
 use crate::output::Printer;
 use crate::process;
 use crate::signals::Signals;
@@ -58,6 +59,7 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
         hint: "end that one, or name another folder with --dir".to_owned(),
         ..why
     })?;
+    logs::keep(config, &logs::file(&dir, "crew"));
     let mut signals = Signals::listen()?;
     let bus = process::client(config, Role::Worker, &options.connect, &options.namespace, "crew").await?;
     let mut orchestrators =
@@ -142,7 +144,8 @@ fn roles(
         let count = if *stage == Stage::Simulation { slots } else { 1 };
         for name in names(*stage, count) {
             let spool = dir.join(&name).display().to_string();
-            let words = ["worker", stage.name(), "--spool", &spool, "--connect", &options.connect];
+            let log = logs::file(dir, &name).display().to_string();
+            let words = ["worker", stage.name(), "--spool", &spool, "--log-file", &log, "--connect", &options.connect];
             let last = ["--namespace", &options.namespace, "--tied", "--durable"];
             let own = words.into_iter().chain(last).map(str::to_owned).collect();
             roles.push(Member::new(config, &name, own, Vec::new())?);

@@ -9,10 +9,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use socrates_link::Bus;
-use socrates_link::rules::Role;
+use socrates_model::TraceContext;
 use socrates_model::fault::FailureClass;
+use socrates_model::job::JobKey;
 use socrates_model::wire::{JobAsk, JobWhy, StatusAsk, Wait};
-use socrates_orchestrator::{Attempt, AttemptEnd, Snapshot, whys_of_rows};
+use socrates_orchestrator::{Attempt, AttemptEnd, Scenario, Snapshot, whys_of_rows};
 use socrates_store::Reader;
 
 use crate::config::Config;
@@ -24,7 +25,7 @@ use crate::progress::span;
 use crate::standing::part_words;
 use crate::supervise::endpoint;
 use crate::words::plural;
-use crate::{calls, place, process, work};
+use crate::{calls, logs, place, process, work};
 
 /// Names that are proposed for one that is not known, at most.
 const NEAR: usize = 5;
@@ -34,6 +35,10 @@ const ATTEMPTS: usize = 20;
 const FAULTS: usize = 6;
 /// Letters of a worker's name that tell it from the others.
 const SHORT: usize = 8;
+/// Lines of logs that are shown of a job, at most: the newest.
+const LOGGED: usize = 60;
+/// Attempts whose lines are known by their span alone.
+const MOST_SPANS: u32 = 64;
 
 /// Where the job is.
 #[derive(Debug, Clone)]
@@ -50,43 +55,127 @@ struct Known {
     whys: Vec<JobWhy>,
     /// A remark on where it is from.
     note: Option<String>,
+    /// The trace of the scenario; none where its rows do not tell it.
+    trace: Option<TraceContext>,
+    /// Folders where logs may lie.
+    logs: Vec<PathBuf>,
 }
 
 /// Explains jobs, named as `SCENARIO`, `SCENARIO/STAGE` or `SCENARIO/STAGE/ITEM`.
 ///
 /// # Errors
 /// A name that cannot be one of a job, or is of none; no orchestrator, no store.
-pub async fn explain(talk: &Printer, config: &Config, job: &str, at: &Where) -> Result<(), Complaint> {
-    let ask: JobAsk = job.parse().map_err(|bad: socrates_model::ids::BadId| {
+///
+/// Logs are looked for in the folder, and in these `logs` besides, as workers of other machines keep them.
+pub async fn explain(
+    talk: &Printer,
+    config: &Config,
+    job: &str,
+    at: &Where,
+    logs: &[PathBuf],
+) -> Result<(), Complaint> {
+    let ask = asked_for(job)?;
+    let mut known = match at {
+        Where::Endpoint(endpoint, namespace) => of_endpoint(config, &ask, endpoint, namespace).await?,
+        Where::Folder(folder) => of_folder(config, &ask, folder).await?,
+    };
+    known.logs.extend_from_slice(logs);
+    for line in told(&ask, &known)? {
+        talk.line(&line);
+    }
+    let object = |why: &JobWhy| {
+        let past = known.past.iter().find(|past| past.key == why.key);
+        let logged: Vec<Value> = known.timeline(&why.key).into_iter().map(|line| line.object).collect();
+        object(why, past, logged)
+    };
+    let (trace, jobs) = (known.trace.map(|trace| trace.trace_id()), known.whys.iter().map(object).collect::<Vec<_>>());
+    talk.result(&json!({ "job": ask.to_string(), "trace_id": trace, "jobs": jobs }));
+    Ok(())
+}
+
+/// The same of an orchestrator that is connected to already, as lines.
+pub(crate) async fn of_bus(bus: &dyn Bus, job: &str) -> Result<Vec<String>, Complaint> {
+    let ask = asked_for(job)?;
+    told(&ask, &asked(bus, &ask).await?)
+}
+
+fn asked_for(job: &str) -> Result<JobAsk, Complaint> {
+    job.parse().map_err(|bad: socrates_model::ids::BadId| {
         Complaint::input(
             bad.to_string(),
             "a job is SCENARIO, SCENARIO/STAGE or SCENARIO/STAGE/ITEM, such as s-1/simulation/reference-1",
         )
-    })?;
-    let known = match at {
-        Where::Endpoint(endpoint, namespace) => of_endpoint(config, &ask, endpoint, namespace).await?,
-        Where::Folder(folder) => of_folder(config, &ask, folder).await?,
-    };
+    })
+}
+
+/// Everything that is known, in lines.
+fn told(ask: &JobAsk, known: &Known) -> Result<Vec<String>, Complaint> {
     if known.whys.is_empty() {
-        return Err(no_job(&ask, &known.past));
+        return Err(no_job(ask, &known.past));
     }
-    if let Some(note) = &known.note {
-        talk.line(note);
-    }
+    let mut all: Vec<String> = known.note.iter().cloned().collect();
+    all.extend(known.trace.map(|trace| format!("trace      {}", trace.trace_id())));
     let now_ms = socrates_link::wall_ms();
     for why in &known.whys {
         let past = known.past.iter().find(|past| past.key == why.key);
-        for line in lines(why, past, now_ms) {
-            talk.line(&line);
+        all.extend(lines(why, past, now_ms));
+        all.extend(known.timeline(&why.key).iter().map(logged_words));
+    }
+    Ok(all)
+}
+
+impl Known {
+    /// What processes logged about a job, in order of time, the newest lines of it.
+    fn timeline(&self, key: &JobKey) -> Vec<logs::Line> {
+        let Some(trace) = self.trace else { return Vec::new() };
+        let spans: Vec<String> = (1..=MOST_SPANS).map(|attempt| trace.of_attempt(key, attempt).span_id()).collect();
+        let job = key.to_string();
+        let is_of = |line: &logs::Line| {
+            let word = |name: &str| line.object.get(name).and_then(Value::as_str);
+            match (word("job"), word("span_id")) {
+                (Some(named), _) => named == job,
+                (None, Some(span)) => spans.iter().any(|own| own == span),
+                (None, None) => true,
+            }
+        };
+        let all = self.logs.iter().flat_map(|dir| logs::of_trace(dir, &trace.trace_id()));
+        let mut own: Vec<logs::Line> = all.filter(is_of).collect();
+        own.sort_by(|a, b| a.at.cmp(&b.at));
+        own.split_off(own.len().saturating_sub(LOGGED))
+    }
+}
+
+/// A line of a log in words: when, who, what, and the fields that say more.
+fn logged_words(line: &logs::Line) -> String {
+    let word = |name: &str| {
+        let value = line.object.get(name)?;
+        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        (!text.is_empty()).then_some(text)
+    };
+    let time = line.at.split_once('T').map_or(line.at.as_str(), |(_, time)| time).trim_end_matches('Z');
+    let mut words = format!("log        {time}  {:<14} {}", line.process, word("msg").unwrap_or_default());
+    let fields = [
+        ("attempt", "attempt "),
+        ("outcome", ""),
+        ("recorded", ""),
+        ("result", ""),
+        ("class", ""),
+        ("faults", ""),
+        ("why", ""),
+        ("remark", ""),
+        ("len", "bytes "),
+        ("wall_ms", "ms "),
+    ];
+    for (name, label) in fields {
+        if let Some(value) = word(name) {
+            words.push_str(&format!(" · {label}{value}"));
         }
     }
-    let object = |why: &JobWhy| object(why, known.past.iter().find(|past| past.key == why.key));
-    talk.result(&json!({ "job": ask.to_string(), "jobs": known.whys.iter().map(object).collect::<Vec<_>>() }));
-    Ok(())
+    words
 }
 
 async fn of_endpoint(config: &Config, ask: &JobAsk, endpoint: &str, namespace: &str) -> Result<Known, Complaint> {
-    let bus = process::client(config, Role::Client, endpoint, namespace, "explain").await?;
+    let bus = process::looker(config, endpoint, namespace, "explain").await?;
     let known = asked(bus.as_ref(), ask).await;
     bus.close().await;
     known
@@ -120,13 +209,14 @@ async fn asked(bus: &dyn Bus, ask: &JobAsk) -> Result<Known, Complaint> {
             (whys, Some(note.to_owned()))
         }
     };
-    Ok(Known { past: past(rows, ask), whys, note })
+    Ok(Known { trace: trace(&rows, ask), past: past(rows, ask), whys, note, logs: Vec::new() })
 }
 
 /// What a folder holds, and what its orchestrator says where a run goes on in it.
 async fn of_folder(config: &Config, ask: &JobAsk, folder: &Path) -> Result<Known, Complaint> {
     if let Some((endpoint, namespace)) = endpoint(&folder.display().to_string()).filter(|_| folder.is_dir()) {
-        return of_endpoint(config, ask, &endpoint, &namespace).await;
+        let known = of_endpoint(config, ask, &endpoint, &namespace).await?;
+        return Ok(Known { logs: log_folders(folder), ..known });
     }
     let stores = [work::store(folder), work::store(&folder.join(place::WORK))];
     let store = stores.into_iter().find(|store| store.is_file()).ok_or_else(|| {
@@ -153,7 +243,18 @@ async fn of_folder(config: &Config, ask: &JobAsk, folder: &Path) -> Result<Known
         "store      {} · where `socrates cluster up` serves it, --connect tells what is in its memory alone",
         shell(&store)
     );
-    Ok(Known { whys: whys_of_rows(rows.clone(), ask), past: past(rows, ask), note: Some(note) })
+    let (trace, logs) = (trace(&rows, ask), log_folders(folder));
+    Ok(Known { whys: whys_of_rows(rows.clone(), ask), past: past(rows, ask), note: Some(note), trace, logs })
+}
+
+/// Where the logs of a folder lie: of `cluster up` or `cluster work`, or of a run.
+fn log_folders(folder: &Path) -> Vec<PathBuf> {
+    vec![folder.join(logs::FOLDER), folder.join(place::WORK).join(logs::FOLDER)]
+}
+
+/// The trace of a scenario.
+fn trace(rows: &Snapshot, ask: &JobAsk) -> Option<TraceContext> {
+    rows.scenarios.iter().find(|scenario| scenario.spec.id == ask.scenario).map(Scenario::trace)
 }
 
 fn past(rows: Snapshot, ask: &JobAsk) -> Vec<PastJob> {
@@ -255,7 +356,10 @@ fn wait_words(wait: &Wait) -> String {
             format!("the rate of `{server}` is used up; it may be asked in {}", time(*in_ms))
         }
         Wait::Rests { in_ms } => {
-            format!("too many attempts of the stage failed in passing; one is tried in {}", time(*in_ms))
+            format!(
+                "the stage rests, since many of its attempts failed with trouble that may pass; one is tried in {}",
+                time(*in_ms)
+            )
         }
         Wait::Slots { most } => format!("{most} questions are put to authors at one time, as many as may be now"),
         Wait::Begun { most } => format!("{most} scenarios are under way, as many as may be; they are finished first"),
@@ -309,7 +413,7 @@ fn attempt_words(attempt: &Attempt, now_ms: u64) -> String {
 /// A class of failures in words.
 pub(crate) const fn class_words(class: FailureClass) -> &'static str {
     match class {
-        FailureClass::Transient => "passing trouble",
+        FailureClass::Transient => "trouble that may pass",
         FailureClass::Overload => "too much was asked of the server",
         FailureClass::Semantic => "a wrong answer",
         FailureClass::Unparsable => "an answer that cannot be read",
@@ -319,7 +423,7 @@ pub(crate) const fn class_words(class: FailureClass) -> &'static str {
     }
 }
 
-fn object(why: &JobWhy, past: Option<&PastJob>) -> Value {
+fn object(why: &JobWhy, past: Option<&PastJob>, logged: Vec<Value>) -> Value {
     let attempt = |one: &Attempt| {
         json!({
             "attempt": one.number, "worker": one.instance, "end": one.end.map(AttemptEnd::name), "class": one.class,
@@ -329,7 +433,7 @@ fn object(why: &JobWhy, past: Option<&PastJob>) -> Value {
     let waits: Vec<Value> = why.why.iter().map(|wait| json!({ "reason": wait, "told": wait_words(wait) })).collect();
     json!({
         "job": why.key.to_string(), "state": why.state, "since_ms": past.map_or(0, |past| past.since_ms), "why": waits,
-        "attempts": past.map(|past| past.attempts.iter().map(attempt).collect::<Vec<_>>()),
+        "attempts": past.map(|past| past.attempts.iter().map(attempt).collect::<Vec<_>>()), "log": logged,
     })
 }
 
@@ -417,7 +521,7 @@ mod tests {
                 "             G-DISC: jumps",
             ]
         );
-        let object = object(&why, Some(&past));
+        let object = object(&why, Some(&past), Vec::new());
         assert_eq!(
             (object["why"][0]["reason"]["backoff"]["in_ms"].as_u64(), &object["attempts"][0]["class"]),
             (Some(500), &json!("semantic"))

@@ -60,6 +60,7 @@ pub mod keys;
 pub mod labels;
 pub mod layout;
 mod library_index;
+pub mod logs;
 mod many;
 pub mod map;
 pub mod merge;

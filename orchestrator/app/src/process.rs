@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::rules::Role;
@@ -17,6 +18,7 @@ use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder;
 use crate::keys;
+use crate::logs;
 use crate::orchestrate::{self, OrchestratorConfig};
 use crate::output::Printer;
 
@@ -39,6 +41,8 @@ pub struct WorkerOptions {
     pub durable: bool,
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     pub inject: String,
+    /// File in which its log is kept, as JSON lines; none for nowhere.
+    pub log_file: Option<PathBuf>,
 }
 
 /// Options of the orchestrator process.
@@ -82,6 +86,9 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
     let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| {
         Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
     })?;
+    if let Some(file) = &options.log_file {
+        logs::keep(config, file);
+    }
     let shutdown = leave(options.tied);
     let (connect, namespace) = (&options.connect, &options.namespace);
     let bus = joined(config, Role::Worker, connect, namespace, &format!("worker-{stage}"), options.tied).await?;
@@ -211,6 +218,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
     if !options.tied {
         folder::of_one_machine(&options.dir)?;
     }
+    logs::keep(config, &logs::file(&options.dir, "orchestrator"));
     let metrics = match &options.metrics {
         Some(address) => Some(figures(talk, address, options.insecure).await?),
         None => None,
@@ -277,6 +285,48 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
     })
 }
 
+/// How long somebody may take to answer who is only looked at.
+const LOOK: Duration = Duration::from_secs(5);
+/// How long a machine may take to say whether anybody listens on a port.
+const KNOCK: Duration = Duration::from_secs(2);
+/// How long joining tries where it is known already that nobody listens: for the reason alone.
+const NO_HOPE: Duration = Duration::from_millis(200);
+
+/// A client that looks or says one word: where nobody is there, it is said within [`LOOK`].
+pub(crate) async fn looker(
+    config: &Config,
+    endpoint: &str,
+    namespace: &str,
+    name: &str,
+) -> Result<Arc<dyn Bus>, Complaint> {
+    let hint = "is `socrates run` or `socrates cluster up` running there, and is the port open from here?";
+    let nobody = |tried: &str| {
+        let what = format!("nobody answers at `{endpoint}`: {tried}");
+        Complaint::input(what, hint)
+    };
+    not_in_clear(config, endpoint)?;
+    let patience = match endpoint.strip_prefix("tcp/") {
+        Some(address) => {
+            let address = address.split(['?', '#']).next().unwrap_or_default();
+            match tokio::time::timeout(KNOCK, tokio::net::TcpStream::connect(address)).await {
+                // Somebody is there, perhaps a busy one.
+                Ok(Ok(_stream)) => return client(config, Role::Client, endpoint, namespace, name).await,
+                Ok(Err(_refused)) => NO_HOPE,
+                Err(_elapsed) => {
+                    let tried = format!("a TCP connection was neither taken nor refused within {} s", KNOCK.as_secs());
+                    return Err(nobody(&tried));
+                }
+            }
+        }
+        None => KNOCK,
+    };
+    let joined = joining(config, Role::Client, endpoint, namespace, name, Some(patience));
+    tokio::time::timeout(LOOK, joined).await.unwrap_or_else(|_elapsed| {
+        let with = if endpoint.starts_with(SECURE) { " with the keys of this role" } else { "" };
+        Err(nobody(&format!("a connection{with} was tried for {} s", LOOK.as_secs())))
+    })
+}
+
 /// A client of a router, in this role: where there are keys they have to be of it.
 pub(crate) async fn client(
     config: &Config,
@@ -285,20 +335,35 @@ pub(crate) async fn client(
     namespace: &str,
     name: &str,
 ) -> Result<Arc<dyn Bus>, Complaint> {
-    if !config.text(keys::SETTING).is_empty() && !endpoint.starts_with(SECURE) && !is_local(endpoint) {
-        let what = format!("`{endpoint}` goes to another machine in clear, although there are keys");
-        return Err(Complaint::input(
-            what,
-            "connect to an endpoint that begins with quic/, or without keys: --keys ''",
-        ));
+    joining(config, role, endpoint, namespace, name, None).await
+}
+
+/// Refuses to go to another machine in clear where there are keys.
+fn not_in_clear(config: &Config, endpoint: &str) -> Result<(), Complaint> {
+    if config.text(keys::SETTING).is_empty() || endpoint.starts_with(SECURE) || is_local(endpoint) {
+        return Ok(());
     }
+    let what = format!("`{endpoint}` goes to another machine in clear, although there are keys");
+    Err(Complaint::input(what, "connect to an endpoint that begins with quic/, or without keys: --keys ''"))
+}
+
+async fn joining(
+    config: &Config,
+    role: Role,
+    endpoint: &str,
+    namespace: &str,
+    name: &str,
+    patience: Option<Duration>,
+) -> Result<Arc<dyn Bus>, Complaint> {
+    not_in_clear(config, endpoint)?;
     let keys = keys::of(config, role, endpoint)?;
     if keys.is_none() && endpoint.starts_with(SECURE) {
         let hint =
             format!("--keys names the folder of the role, such as keys/{role}; `socrates cluster keys` makes them");
         return Err(Complaint::input(format!("`{endpoint}` needs keys"), hint));
     }
-    let settings = ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint).credentials(keys);
+    let mut settings = ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint).credentials(keys);
+    settings.patience = patience.unwrap_or(settings.patience);
     let hint = "is `socrates run` or `socrates cluster up` running there?";
     socrates_link::join(settings).await.map_err(|why| keys::told(why, &format!("cannot connect to `{endpoint}`"), hint))
 }
@@ -355,6 +420,19 @@ mod tests {
             let why = figures(&talk, bad, false).await.unwrap_err();
             assert!(why.what.contains(&format!("`{bad}`")) && why.hint.contains("9464"), "{why}");
         }
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    #[cfg(feature = "zenoh")]
+    async fn where_nobody_is_there_it_is_said_soon_and_what_was_tried() {
+        let config = Config::load(None, std::iter::empty(), &[]).unwrap();
+        // A port that was just free.
+        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let endpoint = format!("tcp/127.0.0.1:{port}");
+        let began = std::time::Instant::now();
+        let why = looker(&config, &endpoint, "main", "look").await.err().unwrap();
+        assert!(why.what.contains(&endpoint) && why.hint.contains("cluster up"), "{why}");
+        assert!(began.elapsed() < Duration::from_secs(8), "ten seconds are for those who wait: {:?}", began.elapsed());
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::time::Duration;
 use socrates_kit::LocalBlobs;
 use socrates_link::{Overflow, keys};
 use socrates_model::wire::{Notice, Priority, ScenarioSpec, ScenarioStatus, StatusAsk};
-use socrates_model::{Digest, ScenarioEnd, ScenarioId};
+use socrates_model::{Digest, ScenarioEnd, ScenarioId, TraceContext};
 use socrates_store::Reader;
 use tokio::time::Instant;
 
@@ -158,6 +158,10 @@ async fn follow(
         .subscribe(keys::EVENTS, 4096, Overflow::DropOldest)
         .await
         .map_err(|why| Complaint::resumes(why.to_string()))?;
+    for spec in &specs {
+        let trace = TraceContext::of_scenario(BATCH, &spec.id, &spec.request, spec.seed);
+        tracing::info!(scenario = %spec.id, trace_id = trace.trace_id(), "a scenario is handed in");
+    }
     submit(bus.as_ref(), BATCH, Priority::Normal, specs).await?;
     // Listened to all the time: a signal between two rounds must not get lost.
     let mut signals = Signals::listen()?;

@@ -301,7 +301,7 @@ fn no_batch(name: &str, there: &[String]) -> Complaint {
 async fn of_endpoint(config: &Config, wish: Wish<'_>) -> Result<Standing, Complaint> {
     let Wish { what, batch, listed } = wish;
     let (address, namespace) = endpoint(what).ok_or_else(|| nothing(what))?;
-    let bus = process::client(config, Role::Client, &address, &namespace, "watch").await?;
+    let bus = process::looker(config, &address, &namespace, "watch").await?;
     let mut first = calls::status(bus.as_ref(), &wish.page(0)).await.map_err(calls::silent)?;
     wish.check(&first)?;
     first.batches.retain(|one| batch.is_empty() || one.name == batch);

@@ -1,7 +1,7 @@
 //! `cluster pause`, `resume`, `cancel`, `requeue`: what a client has done about jobs, and what came of it in words.
 
 use serde_json::json;
-use socrates_link::rules::Role;
+use socrates_link::Bus;
 use socrates_model::ScenarioId;
 use socrates_model::job::Stage;
 use socrates_model::wire::{Chosen, Left, Part, Steer, Steered};
@@ -63,7 +63,7 @@ pub async fn steer(
     whom: &Whom,
 ) -> Result<Code, Complaint> {
     let wishes = wishes(act, whom)?;
-    let bus = process::client(config, Role::Client, &options.connect, &options.namespace, "steer").await?;
+    let bus = process::looker(config, &options.connect, &options.namespace, "steer").await?;
     let mut all = Steered::default();
     for wish in &wishes {
         add(&mut all, calls::steer(bus.as_ref(), wish.clone()).await?);
@@ -74,6 +74,16 @@ pub async fn steer(
     }
     talk.result(&json!({ "scenarios": all.scenarios, "jobs": all.jobs, "held": all.held, "left": all.left }));
     Ok(if all.left.iter().any(|left| left.unknown) { Code::Input } else { Code::Ok })
+}
+
+/// Does one thing over a bus that is connected already, and says what came of it.
+pub(crate) async fn over(bus: &dyn Bus, act: Act, whom: &Whom) -> Result<Vec<String>, Complaint> {
+    let mut all = Steered::default();
+    let wishes = wishes(act, whom)?;
+    for wish in &wishes {
+        add(&mut all, calls::steer(bus, wish.clone()).await?);
+    }
+    Ok(lines(act, wishes.first(), &all))
 }
 
 /// The messages of a wish.

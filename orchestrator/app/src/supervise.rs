@@ -16,6 +16,7 @@ use crate::config::Config;
 use crate::crew::{Crew, Member, ours};
 use crate::driver_process::DriverCommand;
 use crate::exit::{Code, Complaint};
+use crate::logs;
 use crate::router::{ENDPOINT_FILE, Router, SOCKET, read_endpoint};
 
 /// How long the orchestrator may take to appear.
@@ -42,6 +43,7 @@ impl Supervisor {
         driven_by: Option<&str>,
     ) -> Result<Self, Complaint> {
         let namespace = "run";
+        logs::keep(config, &logs::file(work, "supervisor"));
         let Router { bus, socket, endpoint } = Router::open(work, config, namespace).await?;
         let mut presence = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| ours(&why.to_string()))?;
         let (report, gave_up) = mpsc::channel(16);
@@ -118,7 +120,9 @@ fn roles(
         let count = if stage == Stage::Simulation { simulations.clamp(1, 64) } else { 1 };
         for name in names(stage, count) {
             let (blobs, spool) = (text(work.join("blobs")), text(work.join("spool").join(&name)));
-            let words = ["worker", stage.name(), "--blobs", &blobs, "--spool", &spool].map(str::to_owned);
+            let log = text(logs::file(work, &name));
+            let words =
+                ["worker", stage.name(), "--blobs", &blobs, "--spool", &spool, "--log-file", &log].map(str::to_owned);
             roles.push(role(&name, &words, Vec::new())?);
         }
     }

@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 use socrates_link::Bus;
-use socrates_link::rules::Role;
 use socrates_model::JobState;
-use socrates_model::wire::{Failed, StageStatus, StatusAsk, StatusReply, Table, WorkerStatus};
+use socrates_model::wire::{BatchStatus, Failed, StageStatus, StatusAsk, StatusReply, Table, WorkerStatus};
 
 use crate::config::Config;
 use crate::exit::Complaint;
-use crate::explain_job::class_words;
+use crate::explain_job::{self, class_words};
 use crate::progress::span;
 use crate::standing::head;
+use crate::steer::{self, Act, Whom};
 use crate::supervise::endpoint;
 use crate::{calls, process};
 
@@ -25,6 +25,44 @@ pub const STAGE_HEADS: [&str; 10] =
 /// Heads of the columns of workers.
 pub const WORKER_HEADS: [&str; 5] = ["worker", "machine", "stages", "holds", "heard"];
 
+/// Heads of the columns of batches.
+pub const BATCH_HEADS: [&str; 6] = ["batch", "priority", "done", "failed", "running", "state"];
+
+/// A batch of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BatchRow {
+    /// Its name.
+    pub name: String,
+    /// Whether a client holds it back by itself or with everything.
+    pub paused: bool,
+    /// Its row, as [`BATCH_HEADS`].
+    pub cells: [String; 6],
+}
+
+/// A failed attempt of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FailureRow {
+    /// Its job, as `explain` takes it.
+    pub job: String,
+    /// Its scenario.
+    pub scenario: String,
+    /// What is said of it.
+    pub line: String,
+}
+
+/// What a person at the table has done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Deed {
+    /// Hands out no more jobs of a batch.
+    Pause(String),
+    /// Hands them out again.
+    Resume(String),
+    /// Gives up what a batch has not done.
+    CancelBatch(String),
+    /// Gives up a scenario.
+    CancelScenario(String),
+}
+
 /// One look at an orchestrator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sight {
@@ -34,8 +72,10 @@ pub struct Sight {
     pub stages: Vec<[String; 10]>,
     /// A row per worker, as [`WORKER_HEADS`].
     pub workers: Vec<[String; 5]>,
-    /// A line per failed attempt, newest first.
-    pub failures: Vec<String>,
+    /// Batches, the newest last.
+    pub batches: Vec<BatchRow>,
+    /// Failed attempts, the newest first.
+    pub failures: Vec<FailureRow>,
     /// The same for programs.
     pub object: Value,
 }
@@ -58,7 +98,7 @@ impl Viewer {
                 "name the folder of a run that goes on, or an endpoint such as tcp/127.0.0.1:7447@main",
             )
         })?;
-        let bus = process::client(config, Role::Client, &address, &namespace, "top").await?;
+        let bus = process::looker(config, &address, &namespace, "top").await?;
         Ok(Self { what: what.to_owned(), bus })
     }
 
@@ -75,6 +115,29 @@ impl Viewer {
                 "`socrates status` works with it; start `socrates cluster up` of this version",
             )
         })
+    }
+
+    /// Does what a person wants done, and says what came of it.
+    ///
+    /// # Errors
+    /// The orchestrator does not answer, or refuses.
+    pub async fn act(&self, deed: &Deed) -> Result<String, Complaint> {
+        let of_batch = |name: &String| Whom { batch: Some(name.clone()), ..Whom::default() };
+        let (act, whom) = match deed {
+            Deed::Pause(batch) => (Act::Pause, of_batch(batch)),
+            Deed::Resume(batch) => (Act::Resume, of_batch(batch)),
+            Deed::CancelBatch(batch) => (Act::Cancel, of_batch(batch)),
+            Deed::CancelScenario(name) => (Act::Cancel, Whom { scenarios: vec![name.clone()], ..Whom::default() }),
+        };
+        Ok(steer::over(self.bus.as_ref(), act, &whom).await?.join(" · "))
+    }
+
+    /// What was tried for a job, and why it stands where it does, in lines.
+    ///
+    /// # Errors
+    /// The orchestrator does not answer, or does not know the job.
+    pub async fn explain(&self, job: &str) -> Result<Vec<String>, Complaint> {
+        explain_job::of_bus(self.bus.as_ref(), job).await
     }
 
     /// Leaves the bus.
@@ -97,10 +160,11 @@ fn sight(what: &str, reply: &StatusReply) -> Option<Sight> {
         head: lines,
         stages: table.stages.iter().map(|of| stage(of, table)).collect(),
         workers,
+        batches: reply.batches.iter().map(batch).collect(),
         failures: table.failures.iter().map(failure).collect(),
         object: json!({
             "what": what, "total": reply.total, "done": reply.done, "running": reply.running, "pace": reply.pace,
-            "paused": reply.paused, "table": table,
+            "paused": reply.paused, "batches": reply.batches, "table": table,
         }),
     })
 }
@@ -111,7 +175,7 @@ fn tokens(table: &Table) -> String {
         .tokens
         .values()
         .fold((0_u64, 0_u64), |(asked, answered), one| (asked.saturating_add(one.0), answered.saturating_add(one.1)));
-    format!("reign {} · tokens {asked} in, {answered} out", table.epoch)
+    format!("start {} of the orchestrator · since then {asked} tokens in, {answered} out", table.epoch)
 }
 
 fn time(ms: u64) -> String {
@@ -155,10 +219,34 @@ fn worker(of: &WorkerStatus) -> [String; 5] {
     [short, machine, stages.join(", "), holds, format!("{} ago", time(of.seen_ms))]
 }
 
-fn failure(of: &Failed) -> String {
+fn batch(of: &BatchStatus) -> BatchRow {
+    let open = of.total.saturating_sub(of.done);
+    let state = match (of.paused, open) {
+        (_, 0) if of.canceled > 0 => format!("done, {} given up", of.canceled),
+        (_, 0) => "done".to_owned(),
+        (true, _) => "paused".to_owned(),
+        (false, _) if of.running > 0 => "going on".to_owned(),
+        (false, _) => "waiting".to_owned(),
+    };
+    BatchRow {
+        name: of.name.clone(),
+        paused: of.paused,
+        cells: [
+            of.name.clone(),
+            of.priority.name().to_owned(),
+            format!("{} of {}", of.done, of.total),
+            of.failed.to_string(),
+            of.running.to_string(),
+            state,
+        ],
+    }
+}
+
+fn failure(of: &Failed) -> FailureRow {
     let why = of.class.map_or("no reason was said", class_words);
     let fault = of.fault.as_ref().map_or_else(String::new, |fault| format!(" · {fault}"));
-    format!("{} ago · {} attempt {} · {why}{fault}", time(of.ago_ms), of.key, of.attempt)
+    let line = format!("{} ago · {} attempt {} · {why}{fault}", time(of.ago_ms), of.key, of.attempt);
+    FailureRow { job: of.key.to_string(), scenario: of.key.scenario.to_string(), line }
 }
 
 #[cfg(test)]
@@ -206,14 +294,18 @@ mod tests {
             tokens: BTreeMap::from([("a".to_owned(), (1, 2)), ("b".to_owned(), (10, 20))]),
         };
         let pace = Some(Pace { ended: 2, work_ms: 60_000, idle_ms: None });
-        let reply = StatusReply { total: 5, done: 2, table: Some(table), pace, ..StatusReply::default() };
+        let batches =
+            vec![BatchStatus { name: "night".to_owned(), total: 5, done: 2, paused: true, ..BatchStatus::default() }];
+        let reply = StatusReply { total: 5, done: 2, table: Some(table), pace, batches, ..StatusReply::default() };
         let sight = sight("tcp/x:1", &reply).unwrap();
         assert_eq!(sight.head[0], "tcp/x:1 · going on");
-        assert_eq!(sight.head[3], "reign 3 · tokens 11 in, 22 out");
+        assert_eq!(sight.head[3], "start 3 of the orchestrator · since then 11 tokens in, 22 out");
         assert_eq!(sight.stages[0].join("|"), "paths (paused)|1|4|2|0|0|0|0|0|3 s");
         assert_eq!(sight.workers[0].join("|"), "01234567|lab 7|paths|s-1/paths/r0 and 1 more|400 ms ago");
         assert_eq!(sight.workers[1][0], "and 2 more");
-        assert_eq!(sight.failures, ["12 s ago · s-1/paths/r0 attempt 2 · a wrong answer · G-DISC robot: jumps"]);
+        assert_eq!(sight.failures[0].line, "12 s ago · s-1/paths/r0 attempt 2 · a wrong answer · G-DISC robot: jumps");
+        assert_eq!((sight.failures[0].job.as_str(), sight.failures[0].scenario.as_str()), ("s-1/paths/r0", "s-1"));
+        assert_eq!(sight.batches[0].cells.join("|"), "night|normal|2 of 5|0|0|paused");
         assert_eq!(sight.object["table"]["stages"][0]["states"]["ready"], 4);
         assert!(super::sight("x", &StatusReply::default()).is_none());
     }

@@ -9,10 +9,10 @@
 
 #[cfg(test)]
 mod build_id;
+mod log;
 mod screen;
 mod verbs;
 
-use std::io::IsTerminal as _;
 use std::pin::Pin;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -58,12 +58,12 @@ fn main() -> ExitCode {
 }
 
 fn begin(talk: &Printer, cli: &Cli) -> Result<Code, Complaint> {
-    let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.set)?.of(Program {
+    let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.all())?.of(Program {
         file: std::env::current_exe().ok(),
         build: BUILD_ID.to_owned(),
         temp: std::env::temp_dir(),
     });
-    start_log(&config)?;
+    log::start(&config)?;
     let talk = &talk.with_pause(Duration::from_secs(config.number("log.progress_s")));
     let runtime =
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
@@ -75,23 +75,4 @@ fn begin(talk: &Printer, cli: &Cli) -> Result<Code, Complaint> {
     // A blocked reader of a child's pipe must not hold the exit.
     runtime.shutdown_background();
     code
-}
-
-fn start_log(config: &Config) -> Result<(), Complaint> {
-    let filter = tracing_subscriber::EnvFilter::try_new(config.text("log.filter")).map_err(|why| {
-        Complaint::input(
-            format!("`log.filter` is not a filter: {why}"),
-            "for example \"warn\" or \"socrates_kit=debug\"",
-        )
-    })?;
-    // Codes of colors are for terminals; in a file or a pipe they are letters that nobody wrote.
-    let colored = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|text| text.is_empty());
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_ansi(colored)
-        .with_writer(std::io::stderr)
-        .without_time()
-        .compact()
-        .init();
-    Ok(())
 }

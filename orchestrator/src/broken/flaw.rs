@@ -175,5 +175,6 @@ fn held_by_another(state: &State, instance: &str) -> Option<Grant> {
         deadline_ms: state.policy.deadline_ms(job.key.stage),
         idem_key: job.idem_key?,
         inline: std::collections::BTreeMap::new(),
+        traceparent: None,
     })
 }

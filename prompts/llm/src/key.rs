@@ -25,7 +25,8 @@ impl ApiKey {
     }
 
     /// The text with every occurrence of the secret struck out; servers repeat keys in their errors.
-    pub(crate) fn strike_from(&self, text: &str) -> String {
+    #[must_use]
+    pub fn strike_from(&self, text: &str) -> String {
         if self.0.len() < 6 { text.to_owned() } else { text.replace(&self.0, "***") }
     }
 }

@@ -39,5 +39,5 @@ pub use chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
 pub use client::{ChatClient, ClientConfig};
 pub use dialect::{Dialect, Learned, Rung, UnknownName, Wire};
 pub use error::{ChatError, Objection};
-pub use key::ApiKey;
+pub use key::{ApiKey, strike_shapes};
 pub use limits::{Limits, Rate};

@@ -7,9 +7,10 @@ use std::time::Duration;
 use socrates_link::LinkError;
 use socrates_model::job::{Artifact, INLINE_BYTES, JobKey};
 use socrates_model::wire::{Grant, Outcome, Report};
-use socrates_model::{Digest, FailureClass, Fault, FaultCode, Role, Where};
+use socrates_model::{Digest, FailureClass, Fault, FaultCode, Role, TraceContext, Where};
 use tokio::task::{JoinError, JoinSet};
 use tokio::time::Instant;
+use tracing::Instrument as _;
 
 use crate::blobs::{BlobError, Blobs};
 use crate::cancel::Cancel;
@@ -34,12 +35,33 @@ enum End {
     Stopped,
 }
 
-/// Runs an attempt that [`crate::held::Held::take`] took.
+/// Runs an attempt that [`crate::held::Held::take`] took. Whatever is logged meanwhile says of which attempt it is.
 pub(crate) async fn attempt<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant: Grant) -> Result<(), KitError> {
+    let span = span(&worker, &grant);
+    carried_out(worker, stage, grant).instrument(span).await
+}
+
+/// The span of an attempt, with all that tells its lines from those of others.
+fn span(worker: &Worker, grant: &Grant) -> tracing::Span {
+    let key = &grant.spec.key;
+    tracing::info_span!(
+        "attempt",
+        job = %key,
+        scenario = %key.scenario,
+        stage = key.stage.name(),
+        attempt = grant.attempt,
+        fence = grant.fence,
+        worker = worker.config.instance,
+        trace_id = grant.traceparent.map(|trace| trace.trace_id()),
+        span_id = grant.traceparent.map(|trace| trace.span_id()),
+    )
+}
+
+async fn carried_out<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant: Grant) -> Result<(), KitError> {
     let slot = slot_of(&grant);
     let Some(entry) = worker.held.entry(&slot) else { return Ok(()) };
     let begun = Instant::now();
-    tracing::debug!(job = %slot.0, attempt = slot.1, "begins");
+    tracing::info!("the attempt begins");
     let end = tokio::select! {
         () = entry.cancel.stopped() => End::Stopped,
         worked = work(&worker, stage, &grant, &entry.cancel, &entry.progress) => worked,
@@ -47,7 +69,7 @@ pub(crate) async fn attempt<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant:
     let worked = match end {
         End::Worked(worked) => worked,
         End::Stopped => {
-            tracing::info!(job = %slot.0, attempt = slot.1, "stopped");
+            tracing::info!("the attempt was stopped and is handed back");
             worker.held.worked(&slot);
             worker.release(&slot).await;
             worker.held.end(&slot);
@@ -64,11 +86,37 @@ pub(crate) async fn attempt<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant:
         return Err(KitError::InjectedDeath { at: "before a report" });
     }
     let report = report(&worker, &grant, worked, wall_ms).await?;
+    tell(&report);
     let report = keep(&worker, report).await?;
     worker.held.worked(&slot);
-    worker.send_report(&report, number).await?;
+    worker.send_report(&report, number, grant.traceparent).await?;
     worker.held.end(&slot);
     Ok(())
+}
+
+/// One line with all that is known of a finished attempt. What an author was asked and answered is not in it.
+fn tell(report: &Report) {
+    let (tokens_in, tokens_out) = report.tokens;
+    let (wall_ms, artifacts, remark) = (report.wall_ms, report.artifacts.len(), report.remark.as_str());
+    match &report.outcome {
+        Outcome::Ok => {
+            tracing::info!(outcome = "ok", wall_ms, tokens_in, tokens_out, artifacts, remark, "the attempt ended");
+        }
+        Outcome::Failed { class, faults, .. } => {
+            let faults: Vec<&str> = faults.iter().map(|fault| fault.code.code()).collect();
+            let faults = faults.join(" ");
+            tracing::info!(
+                outcome = "failed",
+                ?class,
+                faults,
+                wall_ms,
+                tokens_in,
+                tokens_out,
+                artifacts,
+                "the attempt ended"
+            );
+        }
+    }
 }
 
 /// Fetches the inputs and runs the stage within its deadline, on a task of its own so that a panic stays there.
@@ -94,7 +142,7 @@ async fn work<S: Stage>(
     };
     // A set of one: dropping it stops the task.
     let mut task = JoinSet::new();
-    task.spawn(async move { stage.run(&job).await });
+    task.spawn(async move { stage.run(&job).await }.in_current_span());
     let deadline = Duration::from_millis(grant.deadline_ms);
     match tokio::time::timeout(deadline, task.join_next()).await {
         Ok(Some(Ok(result))) => End::Worked(result),
@@ -134,8 +182,9 @@ async fn inputs(worker: &Arc<Worker>, grant: &Grant) -> Result<Inputs, Failure> 
             fetched.insert(role, bytes);
             continue;
         }
-        let (worker, key) = (Arc::clone(worker), grant.spec.key.clone());
-        asked.spawn(async move { input(&worker, &key, role, digest).await.map(|bytes| (role, bytes)) });
+        let (worker, key, trace) = (Arc::clone(worker), grant.spec.key.clone(), grant.traceparent);
+        let fetching = async move { input(&worker, (&key, trace), role, digest).await.map(|bytes| (role, bytes)) };
+        asked.spawn(fetching.in_current_span());
     }
     while let Some(came) = asked.join_next().await {
         let (role, bytes) = came.map_err(|why| broke(grant, why))??;
@@ -145,8 +194,14 @@ async fn inputs(worker: &Arc<Worker>, grant: &Grant) -> Result<Inputs, Failure> 
     Ok((fetched, refused))
 }
 
-async fn input(worker: &Worker, key: &JobKey, role: Role, digest: Digest) -> Result<Vec<u8>, Failure> {
-    let bytes = worker.config.blobs.get(&worker.bus, digest, worker.config.timeout).await.map_err(|why| {
+async fn input(
+    worker: &Worker,
+    (key, trace): (&JobKey, Option<TraceContext>),
+    role: Role,
+    digest: Digest,
+) -> Result<Vec<u8>, Failure> {
+    let (blobs, limit) = (&worker.config.blobs, worker.config.timeout);
+    let bytes = blobs.get_in(trace, &worker.bus, digest, limit).await.map_err(|why| {
         let message = format!("input `{role}` could not be fetched: {}", chain(&why));
         Failure::from(Fault::new(FaultCode::JBlob, key, message))
     })?;
@@ -208,7 +263,7 @@ async fn report(
     let mut budget = INLINE_BUDGET;
     for output in outputs {
         let role = output.role;
-        match stored(worker, output, &mut budget).await {
+        match stored(worker, grant, output, &mut budget).await {
             Ok(artifact) => report.artifacts.push(artifact),
             Err(BlobError::File { path, why }) if !worker.config.waits_for_disk => {
                 return Err(KitError::Folder { path, why: why.to_string() });
@@ -226,7 +281,7 @@ async fn report(
     Ok(report)
 }
 
-async fn stored(worker: &Worker, output: Output, budget: &mut usize) -> Result<Artifact, BlobError> {
+async fn stored(worker: &Worker, grant: &Grant, output: Output, budget: &mut usize) -> Result<Artifact, BlobError> {
     let Output { role, media, bytes } = output;
     let (digest, len) = (Digest::of(&bytes), bytes.len());
     let small = len <= INLINE_BYTES.min(*budget);
@@ -234,7 +289,8 @@ async fn stored(worker: &Worker, output: Output, budget: &mut usize) -> Result<A
     if inline.is_some() {
         *budget -= len;
     } else {
-        worker.config.blobs.put(&worker.bus, bytes, worker.config.timeout).await?;
+        let (blobs, limit) = (&worker.config.blobs, worker.config.timeout);
+        blobs.put_in(grant.traceparent, &worker.bus, bytes, limit).await?;
     }
     Ok(Artifact { role, digest, len: len as u64, media, inline })
 }

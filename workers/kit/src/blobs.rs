@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use socrates_link::{Bus, LinkError};
-use socrates_model::Digest;
+use socrates_model::{Digest, TraceContext};
 
 /// An artifact that could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -200,12 +200,23 @@ impl Blobs {
     /// # Errors
     /// As [`LocalBlobs::get`]; [`BlobError::Link`] over the bus.
     pub async fn get(&self, bus: &Arc<dyn Bus>, digest: Digest, timeout: Duration) -> Result<Vec<u8>, BlobError> {
+        self.get_in(None, bus, digest, timeout).await
+    }
+
+    /// The same as a part of a trace.
+    pub(crate) async fn get_in(
+        &self,
+        trace: Option<TraceContext>,
+        bus: &Arc<dyn Bus>,
+        digest: Digest,
+        timeout: Duration,
+    ) -> Result<Vec<u8>, BlobError> {
         match self {
             Self::Local(folder) => {
                 let folder = folder.clone();
                 off_thread(folder.path(&digest), move || folder.get(&digest)).await
             }
-            Self::Bus => crate::blob_rpc::fetch(bus, digest, timeout).await,
+            Self::Bus => crate::blob_rpc::fetch(trace, bus, digest, timeout).await,
         }
     }
 
@@ -214,12 +225,23 @@ impl Blobs {
     /// # Errors
     /// As [`LocalBlobs::put`]; [`BlobError::Link`] over the bus.
     pub async fn put(&self, bus: &Arc<dyn Bus>, bytes: Vec<u8>, timeout: Duration) -> Result<Digest, BlobError> {
+        self.put_in(None, bus, bytes, timeout).await
+    }
+
+    /// The same as a part of a trace.
+    pub(crate) async fn put_in(
+        &self,
+        trace: Option<TraceContext>,
+        bus: &Arc<dyn Bus>,
+        bytes: Vec<u8>,
+        timeout: Duration,
+    ) -> Result<Digest, BlobError> {
         match self {
             Self::Local(folder) => {
                 let folder = folder.clone();
                 off_thread(folder.root().to_path_buf(), move || folder.put(&bytes)).await
             }
-            Self::Bus => crate::blob_rpc::store(bus, &bytes, timeout).await,
+            Self::Bus => crate::blob_rpc::store(trace, bus, &bytes, timeout).await,
         }
     }
 }

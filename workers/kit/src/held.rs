@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use socrates_model::TraceContext;
 use socrates_model::job::JobKey;
 use socrates_model::wire::{Grant, Held as HeldLine};
 use tokio::sync::Notify;
@@ -32,6 +33,8 @@ pub(crate) struct Entry {
     pub(crate) cancel: Cancel,
     /// Its progress, percent.
     pub(crate) progress: Arc<AtomicU8>,
+    /// Where it stands in its trace.
+    pub(crate) trace: Option<TraceContext>,
     lease: Duration,
     last_ok: Instant,
     running: bool,
@@ -65,6 +68,7 @@ impl Held {
         let entry = Entry {
             cancel: Cancel::new(),
             progress: Arc::default(),
+            trace: grant.traceparent,
             lease: Duration::from_millis(grant.lease_ms),
             last_ok: Instant::now(),
             running: true,
@@ -193,7 +197,7 @@ impl Held {
             if now.saturating_duration_since(entry.last_ok) >= entry.lease.mul_f64(FENCE_SHARE)
                 && entry.cancel.may_spend()
             {
-                tracing::warn!(job = %slot.0, attempt = slot.1, "no beat came through: the attempt is fenced");
+                tracing::warn!(job = %slot.0, attempt = slot.1, "no beat came through for most of the lease: the attempt is set aside, another worker may have it");
                 entry.cancel.fence(true);
             }
         }

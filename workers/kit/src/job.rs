@@ -28,8 +28,9 @@ impl Job {
     #[must_use]
     pub fn detached(spec: JobSpec, inputs: BTreeMap<Role, Vec<u8>>) -> Self {
         let idem_key = spec.idem_key("detached");
-        let inline = BTreeMap::new();
-        let grant = Grant { spec, attempt: 1, fence: 1, lease_ms: 15_000, deadline_ms: 600_000, idem_key, inline };
+        let (inline, traceparent) = (BTreeMap::new(), None);
+        let (lease_ms, deadline_ms) = (15_000, 600_000);
+        let grant = Grant { spec, attempt: 1, fence: 1, lease_ms, deadline_ms, idem_key, inline, traceparent };
         Self {
             grant,
             inputs,

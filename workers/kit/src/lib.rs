@@ -25,7 +25,7 @@ pub use stage::{Done, Failure, Output, Stage, media};
 
 mod blob_rpc;
 mod blobs;
-pub use blob_rpc::serve_blobs;
+pub use blob_rpc::{BlobMove, serve_blobs};
 pub use blobs::{BlobError, Blobs, LocalBlobs};
 
 mod spool;

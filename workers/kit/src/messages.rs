@@ -7,10 +7,10 @@ use std::time::Duration;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use socrates_link::{Bus, LinkError, call_envelope, keys};
-use socrates_model::Digest;
 use socrates_model::job::Stage;
 use socrates_model::seeds::derive_seed;
 use socrates_model::wire::{Hello, Recorded, Release, Report};
+use socrates_model::{Digest, TraceContext};
 use tokio::sync::watch;
 
 use crate::cache::Cache;
@@ -130,7 +130,22 @@ impl Worker {
         Req: Serialize + Sync,
         Rep: DeserializeOwned,
     {
-        let reply = call_envelope(&*self.bus, key, kind, request, self.config.timeout).await?;
+        self.ask_in(None, key, kind, request).await
+    }
+
+    /// The same as a part of a trace.
+    async fn ask_in<Req, Rep>(
+        &self,
+        trace: Option<TraceContext>,
+        key: &str,
+        kind: &str,
+        request: &Req,
+    ) -> Result<Rep, LinkError>
+    where
+        Req: Serialize + Sync,
+        Rep: DeserializeOwned,
+    {
+        let reply = call_envelope(&*self.bus, key, kind, request, trace, self.config.timeout).await?;
         let newest = self.epoch.fetch_max(reply.epoch, Ordering::AcqRel);
         if reply.epoch < newest {
             tracing::debug!(key, epoch = reply.epoch, newest, "an answer of an earlier orchestrator is not heard");
@@ -147,21 +162,28 @@ impl Worker {
         self.reports.fetch_add(1, Ordering::Relaxed).saturating_add(1)
     }
 
-    /// Sends a spooled report until it is recorded, then forgets it. `number` is 0 for one of an earlier process.
-    pub(crate) async fn send_report(&self, report: &Report, number: u32) -> Result<(), KitError> {
+    /// Sends a spooled report until it is recorded, then forgets it. `number` is 0 for one of an earlier process, of which the
+    /// trace is not known here.
+    pub(crate) async fn send_report(
+        &self,
+        report: &Report,
+        number: u32,
+        trace: Option<TraceContext>,
+    ) -> Result<(), KitError> {
         let mut backoff = Backoff::new(&self.config.instance);
         let mut lose = number > 0 && self.config.faults.drop_report == Some(number);
         loop {
             let sent = if std::mem::take(&mut lose) {
                 Err(LinkError::NoReply { key: keys::REPORT.to_owned() })
             } else {
-                self.ask::<Report, Recorded>(keys::REPORT, KIND_REPORT, report).await
+                self.ask_in::<Report, Recorded>(trace, keys::REPORT, KIND_REPORT, report).await
             };
             if number > 0 && sent.is_ok() && self.config.faults.die_after_report == Some(number) {
                 return Err(KitError::InjectedDeath { at: "after a report" });
             }
             match sent {
-                Ok(Recorded::Accepted | Recorded::Duplicate | Recorded::Late) => {
+                Ok(recorded @ (Recorded::Accepted | Recorded::Duplicate | Recorded::Late)) => {
+                    tracing::info!(job = %report.key, attempt = report.attempt, ?recorded, "the report is recorded");
                     let (spool, report) = (self.spool.clone(), report.clone());
                     return match tokio::task::spawn_blocking(move || spool.done(&report)).await {
                         Ok(done) => done,
@@ -182,9 +204,10 @@ impl Worker {
     pub(crate) async fn release(&self, slot: &Slot) {
         let instance = self.config.instance.clone();
         let release = Release { instance, key: slot.0.clone(), attempt: slot.1, fence: slot.2 };
+        let trace = self.held.entry(slot).and_then(|entry| entry.trace);
         let mut backoff = Backoff::new(&self.config.instance);
         for _try in 0..3 {
-            match self.ask::<Release, Recorded>(keys::RELEASE, "release", &release).await {
+            match self.ask_in::<Release, Recorded>(trace, keys::RELEASE, "release", &release).await {
                 Ok(Recorded::Accepted | Recorded::Duplicate | Recorded::Late) => return,
                 Ok(Recorded::Busy) => {}
                 Err(why) => tracing::debug!(job = %slot.0, %why, "handing back is tried again"),

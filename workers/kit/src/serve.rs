@@ -53,7 +53,7 @@ pub async fn serve<S: Stage>(
     let replay = Arc::clone(&worker);
     attempts.spawn(async move {
         for report in leftovers {
-            replay.send_report(&report, 0).await?;
+            replay.send_report(&report, 0, None).await?;
         }
         Ok(())
     });

@@ -8,15 +8,15 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use socrates_kit::{
-    Blobs, Done, Failure, FaultPlan, Job, KitError, LocalBlobs, Output, Stage, Stop, WorkerConfig, media, serve,
-    serve_blobs,
+    BlobMove, Blobs, Done, Failure, FaultPlan, Job, KitError, LocalBlobs, Output, Stage, Stop, WorkerConfig, media,
+    serve, serve_blobs,
 };
 use socrates_link::{Bus, MemoryBus, Qos, keys};
 use socrates_model::job::{Item, JobKey, JobSpec};
 use socrates_model::wire::{
     Acquire, Acquired, Beat, BeatReply, BeatVerdict, Grant, Hello, NoWork, Outcome, Recorded, Release, Report, Welcome,
 };
-use socrates_model::{Digest, FailureClass, FaultCode, Role, ScenarioId};
+use socrates_model::{Digest, FailureClass, FaultCode, Role, ScenarioId, TraceContext};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
@@ -58,6 +58,8 @@ struct Office {
     lose_acquires: u32,
     lose_reports: u32,
     cancel: bool,
+    /// What reports and releases said of their trace.
+    traces: Vec<Option<TraceContext>>,
     beats: u32,
     /// Reigns after the first.
     reigns: u64,
@@ -120,9 +122,11 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                     ask.answer("beat", "office", reign, &reply).await.unwrap();
                 }
                 keys::REPORT => {
-                    let report = ask.read::<Report>("report").unwrap().body;
+                    let envelope = ask.read::<Report>("report").unwrap();
+                    let report = envelope.body;
                     let recorded = {
                         let mut office = shared.lock().unwrap();
+                        office.traces.push(envelope.traceparent);
                         let same = |r: &Report| r.key == report.key && r.attempt == report.attempt;
                         let known = office.reports.iter().any(same);
                         if !known {
@@ -140,10 +144,12 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                     }
                 }
                 keys::RELEASE => {
-                    let release = ask.read::<Release>("release").unwrap().body;
+                    let envelope = ask.read::<Release>("release").unwrap();
+                    let release = envelope.body;
                     let mut hinted = false;
                     {
                         let mut office = shared.lock().unwrap();
+                        office.traces.push(envelope.traceparent);
                         let granted = office.granted.values().flatten().find(|grant| grant.spec.key == release.key);
                         let again = granted.cloned().filter(|_| office.eager);
                         if let Some(grant) = again {
@@ -183,7 +189,8 @@ fn grant(number: u32, text: &str, act: &str) -> Grant {
     };
     let idem_key = spec.idem_key("t");
     let inline = BTreeMap::from([(digest, text.to_owned())]);
-    Grant { spec, attempt: 1, fence: 1, lease_ms: 1000, deadline_ms: 20_000, idem_key, inline }
+    let traceparent = Some(format!("00-{:032x}-00f067aa0ba902b7-01", number + 1).parse().unwrap());
+    Grant { spec, attempt: 1, fence: 1, lease_ms: 1000, deadline_ms: 20_000, idem_key, inline, traceparent }
 }
 
 struct Rig {
@@ -252,6 +259,8 @@ async fn a_job_is_done_reported_once_and_its_spool_is_empty_again() {
         assert_eq!((big.inline.as_ref(), big.len), (None, 200_000));
         assert_eq!(LocalBlobs::new(dir.path().join("blobs"), false).get(&big.digest).unwrap(), vec![7; 200_000]);
         assert_eq!(spooled(dir.path()), 0);
+        let traces: Vec<_> = [1, 2].map(|number| grant(number, "", "").traceparent).into();
+        assert!(traces[0].is_some() && office.traces == traces, "a report says of which trace it is");
     })
     .await;
 }
@@ -477,7 +486,10 @@ async fn artifacts_cross_the_bus_in_parts() {
     guarded(async {
         let dir = tempfile::tempdir().unwrap();
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
-        let server = tokio::spawn(serve_blobs(Arc::clone(&bus), LocalBlobs::new(dir.path(), false)));
+        let moves = Arc::new(Mutex::new(Vec::new()));
+        let told = Arc::clone(&moves);
+        let seen = move |moved: BlobMove| told.lock().unwrap().push(moved);
+        let server = tokio::spawn(serve_blobs(Arc::clone(&bus), LocalBlobs::new(dir.path(), false), seen));
         let bytes: Vec<u8> = (0..150_001_u32).map(|n| n.to_le_bytes()[0]).collect();
         let limit = Duration::from_secs(5);
         let digest = Blobs::Bus.put(&bus, bytes.clone(), limit).await.unwrap();
@@ -485,7 +497,16 @@ async fn artifacts_cross_the_bus_in_parts() {
         let empty = Blobs::Bus.put(&bus, vec![], limit).await.unwrap();
         assert!(Blobs::Bus.get(&bus, empty, limit).await.unwrap().is_empty());
         assert!(Blobs::Bus.get(&bus, Digest::of(b"nobody"), limit).await.is_err());
+        let strange: Result<u64, _> = socrates_link::call(&*bus, keys::BLOB_PUT, "blob_put", &7, limit).await;
+        assert!(strange.is_err());
         server.abort();
+        let moves = moves.lock().unwrap();
+        for put in [true, false] {
+            let own = moves.iter().filter(|moved| moved.put == put);
+            let (bytes, whole) = own.fold((0, 0), |sum, moved| (sum.0 + moved.bytes, sum.1 + u32::from(moved.whole)));
+            assert_eq!((bytes, whole), (150_001, 2), "{put}: both artifacts, all bytes");
+        }
+        assert_eq!(moves.iter().filter(|moved| moved.refused).count(), 1, "{moves:?}");
     })
     .await;
 }

@@ -36,7 +36,8 @@ fn kind<T: Serialize + DeserializeOwned>(name: &'static str, body: T) -> Kind {
 
 fn written<T: Serialize>(kind: &str, body: T) -> Vec<u8> {
     let (msg_id, sender) = ("m".to_owned(), "s".to_owned());
-    encode(&Envelope { v: 3, min_v: 1, kind: kind.to_owned(), msg_id, sender, epoch: 7, sent_ms: 1, body }).unwrap()
+    let fresh = Envelope::fresh(kind, &sender, 7, body);
+    encode(&Envelope { v: 3, msg_id, sent_ms: 1, ..fresh }).unwrap()
 }
 
 fn read<T: Serialize + DeserializeOwned>(kind: &str, bytes: &[u8]) -> (serde_json::Value, Vec<u8>) {
@@ -72,7 +73,8 @@ fn grant() -> Grant {
         settings: BTreeMap::from([("pace".to_owned(), "max".to_owned())]),
     };
     let inline = BTreeMap::from([(Digest::of(b"paths"), "paths".to_owned())]);
-    Grant { spec, attempt: 3, fence: 41, lease_ms: 15_000, deadline_ms: 120_000, idem_key: Digest::of(b"key"), inline }
+    let (idem_key, traceparent) = (Digest::of(b"key"), None);
+    Grant { spec, attempt: 3, fence: 41, lease_ms: 15_000, deadline_ms: 120_000, idem_key, inline, traceparent }
 }
 
 fn spec() -> ScenarioSpec {
@@ -221,6 +223,18 @@ fn hex(bytes: &[u8]) -> String {
 
 fn unhex(text: &str) -> Vec<u8> {
     (0..text.len()).step_by(2).map(|at| u8::from_str_radix(&text[at..at + 2], 16).unwrap()).collect()
+}
+
+/// A grant as it is written since attempts are traced: what version 3 of before reads of it is all that it wrote itself.
+#[test]
+fn a_grant_with_a_trace_says_the_same_to_a_reader_of_before() {
+    let parent = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01".parse().unwrap();
+    let traced = Grant { traceparent: Some(parent), ..grant() };
+    let bytes = written("acquire", Acquired::Grants(vec![traced.clone()]));
+    let read = decode::<Acquired>("acquire", &bytes).unwrap().body;
+    assert_eq!(read, Acquired::Grants(vec![traced.clone()]));
+    let (mut now, before) = (serde_json::to_value(&traced).unwrap(), serde_json::to_value(grant()).unwrap());
+    assert!(now.as_object_mut().unwrap().remove("traceparent").is_some() && now == before, "{now}");
 }
 
 #[test]

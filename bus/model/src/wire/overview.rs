@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::{FailureClass, Fault};
 use crate::job::{JobKey, Stage};
+use crate::priority::Priority;
 use crate::standing::JobState;
 use crate::wire::Limits;
 
@@ -45,6 +46,12 @@ pub struct BatchStatus {
     /// Wall time at which it was first submitted, ms since 1970, for people; 0 where it is not known.
     #[serde(default)]
     pub since_ms: u64,
+    /// Wall time at which the last of it ended, ms since 1970, for people; 0 while something of it is open, and where it is not known.
+    #[serde(default)]
+    pub ended_ms: u64,
+    /// How urgent it is beside other batches.
+    #[serde(default)]
+    pub priority: Priority,
     /// How fast it goes.
     #[serde(default)]
     pub pace: Pace,

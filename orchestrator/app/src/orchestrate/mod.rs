@@ -9,6 +9,7 @@
 //! Events stand in one line before the owner; nothing of a step is seen before its rows are durable.
 
 mod artifacts;
+mod counts;
 mod metrics;
 mod owner;
 mod past;
@@ -30,6 +31,7 @@ use socrates_store::{Durability, SqliteStore, Store as _, StoreError};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 
+use counts::Counts;
 use owner::Owner;
 use reader::{Disk, Inbound};
 
@@ -128,26 +130,27 @@ pub(crate) async fn serve(
 
     let (line, inbound) = mpsc::channel::<Inbound>(LINE);
     let (committed, telling) = mpsc::channel(TELLING);
-    let commits = metrics::Commits::new();
-    let (writer, mut broken) = writer::start(store, committed, commits.clone()).context("starting the writer")?;
+    let counts = Counts::new();
+    let (writer, mut broken) = writer::start(store, committed, counts.clone()).context("starting the writer")?;
     let mut tasks = JoinSet::new();
-    tasks.spawn(writer::tell(Arc::clone(&bus), epoch, telling));
+    tasks.spawn(writer::tell(Arc::clone(&bus), epoch, telling, counts.clone()));
     // Everything is declared before the token that says so.
     for key in
         [keys::HELLO, keys::ACQUIRE, keys::BEAT, keys::REPORT, keys::RELEASE, keys::SUBMIT, keys::CONTROL, keys::STATUS]
     {
         let serving = bus.serve(key).await.with_context(|| format!("serving `{key}`"))?;
-        let disk = Disk { blobs: blobs.clone(), waits: config.waits };
+        let disk = Disk { blobs: blobs.clone(), waits: config.waits, counts: counts.clone() };
         tasks.spawn(reader::read(Arc::clone(&bus), epoch, serving, line.clone(), disk));
     }
-    let (parts_bus, parts) = (Arc::clone(&bus), blobs.clone());
+    let (parts_bus, parts, moved) = (Arc::clone(&bus), blobs.clone(), counts.clone());
     tasks.spawn(async move {
-        if let Err(why) = socrates_kit::serve_blobs(parts_bus, parts).await {
+        if let Err(why) = socrates_kit::serve_blobs(parts_bus, parts, move |part| moved.moved(part)).await {
             tracing::error!(%why, "artifacts are not served over the bus");
         }
     });
     let store_file = config.dir.join("jobs.sqlite");
-    tasks.spawn(past::serve(Arc::clone(&bus), bus.serve(keys::PAST).await.context("serving the past")?, store_file));
+    let past = bus.serve(keys::PAST).await.context("serving the past")?;
+    tasks.spawn(past::serve(Arc::clone(&bus), past, store_file, counts.clone()));
     let presence = bus.watch_alive(keys::WORKERS_ALIVE).await.context("watching the workers")?;
     if let Some(listener) = config.metrics {
         tasks.spawn(metrics::serve(listener, line.clone()));
@@ -155,7 +158,7 @@ pub(crate) async fn serve(
     tasks.spawn(reader::watch(presence, line));
     let token = bus.declare_alive(&keys::orchestrator_alive(bus.name())).await.context("showing the token")?;
 
-    let mut owner = Owner::new(state, started, writer, commits);
+    let mut owner = Owner::new(state, started, writer, counts);
     let result = tokio::select! {
         biased;
         why = &mut broken => Err(why.map_or_else(|_gone| anyhow::anyhow!("the writer of the job store has ended"), anyhow::Error::from)),

@@ -4,14 +4,15 @@ use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
 use socrates_kit::BlobError;
-use socrates_link::Ask;
+use socrates_model::TraceContext;
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquire, Acquired, NoWork};
-use socrates_orchestrator::{Answer, Effect, Event, Millis, Row, State, Token, status, step};
+use socrates_model::wire::{Acquire, Acquired, NoWork, Outcome, Report};
+use socrates_orchestrator::{Answer, Effect, Event, Millis, Row, Scenario, State, Token, status, step};
 use tokio::sync::mpsc;
 
-use super::metrics::{self, Commits};
-use super::reader::{Inbound, Question};
+use super::counts::Counts;
+use super::metrics;
+use super::reader::{Came, Inbound, Question};
 use super::writer::{Commit, Reply, Said, Say};
 
 /// How long an acquire without work waits for some, ms. Well below the workers' query limit of 2 s.
@@ -53,11 +54,38 @@ fn pause_of_idle(effect: &mut Effect) -> Option<&mut Millis> {
     }
 }
 
+/// A line for each attempt that is handed out.
+fn tell_of_grants(effects: &[Effect], worker: &str) {
+    for effect in effects {
+        let Effect::Reply { answer, .. } = effect else { continue };
+        let Answer::Acquired(Acquired::Grants(grants)) = &**answer else { continue };
+        for grant in grants {
+            let (key, trace) = (&grant.spec.key, grant.traceparent);
+            let (trace_id, span_id) = (trace.map(|trace| trace.trace_id()), trace.map(|trace| trace.span_id()));
+            tracing::info!(
+                job = %key, scenario = %key.scenario, stage = key.stage.name(), attempt = grant.attempt, fence = grant.fence,
+                worker, trace_id, span_id, "an attempt is handed out"
+            );
+        }
+    }
+}
+
+/// A line for each report, in the trace that its worker says.
+fn tell_of(report: &Report, trace: Option<TraceContext>) {
+    let key = &report.key;
+    let (trace_id, span_id) = (trace.map(|trace| trace.trace_id()), trace.map(|trace| trace.span_id()));
+    let outcome = if report.outcome == Outcome::Ok { "ok" } else { "failed" };
+    tracing::info!(
+        job = %key, scenario = %key.scenario, stage = key.stage.name(), attempt = report.attempt, fence = report.fence,
+        worker = report.instance, outcome, wall_ms = report.wall_ms, trace_id, span_id, "a report came"
+    );
+}
+
 /// An acquire that waits for work.
 struct Waiting {
     until: Millis,
     acquire: Acquire,
-    ask: Ask,
+    came: Came,
 }
 
 /// Owns the state. Dropping it ends the writer's line.
@@ -67,17 +95,17 @@ pub(super) struct Owner {
     /// Scenarios that were done when it began.
     done_before: usize,
     writer: mpsc::Sender<Commit>,
-    asks: BTreeMap<Token, Ask>,
+    asks: BTreeMap<Token, Came>,
     next: Token,
     waiting: VecDeque<Waiting>,
-    commits: Commits,
+    counts: Counts,
 }
 
 impl Owner {
-    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>, commits: Commits) -> Self {
+    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>, counts: Counts) -> Self {
         let done_before = state.counts().1;
         let (asks, waiting) = (BTreeMap::new(), VecDeque::new());
-        Self { state, started, done_before, writer, asks, next: 0, waiting, commits }
+        Self { state, started, done_before, writer, asks, next: 0, waiting, counts }
     }
 
     fn now(&self) -> Millis {
@@ -93,7 +121,7 @@ impl Owner {
             let wait = Duration::from_millis(self.pause());
             tokio::select! {
                 inbound = line.recv() => match inbound {
-                    Some(Inbound::Asked(question, ask)) => self.asked(question, ask).await,
+                    Some(Inbound::Asked(question, came)) => self.asked(question, came).await,
                     Some(Inbound::Gone(instance)) => {
                         // Nobody is left to hear the answer; a grant to it would only wait for its lease to end.
                         self.waiting.retain(|waiting| waiting.acquire.instance != instance);
@@ -101,7 +129,7 @@ impl Owner {
                     }
                     // A collector that went away needs no answer.
                     Some(Inbound::Counted(answer)) => {
-                        drop(answer.send(metrics::text(&self.state, self.now(), &self.commits)));
+                        drop(answer.send(metrics::text(&self.state, self.now(), &self.counts.now())));
                     }
                     Some(Inbound::Full(why)) => return Some(why),
                     None => return None,
@@ -123,7 +151,7 @@ impl Owner {
         due.min(held).saturating_sub(now).min(PAUSE_MS)
     }
 
-    async fn asked(&mut self, question: Question, ask: Ask) {
+    async fn asked(&mut self, question: Question, came: Came) {
         self.next += 1;
         let to = self.next;
         let mut leaving = None;
@@ -133,21 +161,24 @@ impl Owner {
                 reply.serving_ms = self.now();
                 reply.done_before = u32::try_from(self.done_before).unwrap_or(u32::MAX);
                 // Behind the rows it speaks of, as every answer.
-                let said = Said { replies: vec![Reply { ask, say: Say::Status(Box::new(reply)) }], ..Said::default() };
+                let said = Said { replies: vec![Reply { came, say: Say::Status(Box::new(reply)) }], ..Said::default() };
                 return self.send(Commit { rows: Vec::new(), said }).await;
             }
-            Question::Acquire(acquire) => return self.acquire(acquire, ask, None).await,
+            Question::Acquire(acquire) => return self.acquire(acquire, came, None).await,
             Question::Hello(hello) => Event::Hello { hello, to },
             Question::Beat(beat) => {
                 leaving = beat.draining.then(|| beat.instance.clone());
                 Event::Beat { beat, to }
             }
-            Question::Report(report) => Event::Report { report, to },
+            Question::Report(report) => {
+                tell_of(&report, came.trace);
+                Event::Report { report, to }
+            }
             Question::Release(release) => Event::Release { release, to },
             Question::Submit(submit) => Event::Submit { submit, to },
             Question::Control(control) => Event::Control { control, to },
         };
-        self.asks.insert(to, ask);
+        self.asks.insert(to, came);
         self.event(event).await;
         if let Some(instance) = leaving {
             self.give_up_of(&instance).await;
@@ -163,7 +194,7 @@ impl Owner {
         if !hinted.is_empty() {
             for waiting in std::mem::take(&mut self.waiting) {
                 if waiting.acquire.stages.iter().any(|stage| hinted.contains(stage)) {
-                    effects.extend(self.acquired(waiting.acquire, waiting.ask, Some(waiting.until)));
+                    effects.extend(self.acquired(waiting.acquire, waiting.came, Some(waiting.until)));
                 } else {
                     self.waiting.push_back(waiting);
                 }
@@ -176,7 +207,7 @@ impl Owner {
     }
 
     /// Answers an acquire, or lets it wait a little for work: then there is nothing to commit.
-    fn acquired(&mut self, acquire: Acquire, ask: Ask, until: Option<Millis>) -> Vec<Effect> {
+    fn acquired(&mut self, acquire: Acquire, came: Came, until: Option<Millis>) -> Vec<Effect> {
         self.next += 1;
         let to = self.next;
         let now = self.now();
@@ -191,22 +222,23 @@ impl Owner {
         let until = until.unwrap_or_else(|| now.saturating_add(HOLD_MS));
         if idle && until > now && self.waiting.len() < HELD {
             let at = self.waiting.partition_point(|other| other.until <= until);
-            self.waiting.insert(at, Waiting { until, acquire, ask });
+            self.waiting.insert(at, Waiting { until, acquire, came });
             return Vec::new();
         }
-        self.asks.insert(to, ask);
+        tell_of_grants(&effects, &acquire.instance);
+        self.asks.insert(to, came);
         effects
     }
 
-    async fn acquire(&mut self, acquire: Acquire, ask: Ask, until: Option<Millis>) {
-        let effects = self.acquired(acquire, ask, until);
+    async fn acquire(&mut self, acquire: Acquire, came: Came, until: Option<Millis>) {
+        let effects = self.acquired(acquire, came, until);
         self.commit(effects).await;
     }
 
     async fn give_up_waiting(&mut self, now: Millis) {
         while self.waiting.front().is_some_and(|waiting| waiting.until <= now) {
             if let Some(waiting) = self.waiting.pop_front() {
-                self.acquire(waiting.acquire, waiting.ask, Some(0)).await;
+                self.acquire(waiting.acquire, waiting.came, Some(0)).await;
             }
         }
     }
@@ -215,7 +247,7 @@ impl Owner {
     async fn give_up_of(&mut self, instance: &str) {
         for waiting in std::mem::take(&mut self.waiting) {
             if waiting.acquire.instance == instance {
-                self.acquire(waiting.acquire, waiting.ask, Some(0)).await;
+                self.acquire(waiting.acquire, waiting.came, Some(0)).await;
             } else {
                 self.waiting.push_back(waiting);
             }
@@ -229,14 +261,16 @@ impl Owner {
             match effect {
                 Effect::Save(row) => commit.rows.push(row),
                 Effect::Reply { to, answer } => {
-                    if let Some(ask) = self.asks.remove(&to) {
-                        commit.said.replies.push(Reply { ask, say: Say::Answer(answer) });
+                    if let Some(came) = self.asks.remove(&to) {
+                        commit.said.replies.push(Reply { came, say: Say::Answer(answer) });
                     }
                 }
                 Effect::Notice { batch, notice } => commit.said.notices.push((batch, *notice)),
                 Effect::Hint(stage) => commit.said.hints.push(stage),
                 Effect::ScenarioDone { id, end } => {
-                    tracing::info!(scenario = %id, result = end.name(), "a scenario ended")
+                    let trace = self.state.scenarios.get(&id).map(Scenario::trace);
+                    let trace_id = trace.map(|trace| trace.trace_id());
+                    tracing::info!(scenario = %id, result = end.name(), trace_id, "a scenario ended");
                 }
             }
         }

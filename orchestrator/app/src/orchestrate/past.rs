@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Instant;
 
 use socrates_link::{Ask, Bus, Serving, keys};
 use socrates_model::wire::{PastAsk, PastEnd, PastPart};
 use socrates_model::{Digest, ScenarioId};
 use socrates_store::Reader;
 
+use super::counts::{Counts, Refusal};
 use super::reader::{kind, told};
 
 /// Scenarios in one answer, at most: keeps it under 64 KiB with names of the longest kind.
@@ -16,13 +18,15 @@ const ENDS: u64 = 400;
 const PART_BYTES: usize = 48 * 1024;
 
 /// Answers until the bus closes.
-pub(super) async fn serve(bus: Arc<dyn Bus>, mut serving: Serving, store: PathBuf) {
+pub(super) async fn serve(bus: Arc<dyn Bus>, mut serving: Serving, store: PathBuf, counts: Counts) {
     // The rows that were asked for last: their parts are asked for one after the other.
     let mut last = None;
     while let Some(ask) = serving.next().await {
+        let came = Instant::now();
         let wish = match ask.read::<PastAsk>(kind(keys::PAST)) {
             Ok(envelope) => envelope.body,
             Err(why) => {
+                counts.refused(keys::PAST, Refusal::Unreadable);
                 told(ask.refuse(bus.name(), 0, &why.to_string()).await);
                 continue;
             }
@@ -37,6 +41,7 @@ pub(super) async fn serve(bus: Arc<dyn Bus>, mut serving: Serving, store: PathBu
             Err(broke) => PastPart::Unknown { why: format!("the answer could not be put together: {broke}") },
         };
         answer(bus.as_ref(), ask, &part).await;
+        counts.answered(keys::PAST, came.elapsed());
     }
 }
 

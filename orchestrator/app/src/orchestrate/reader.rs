@@ -1,14 +1,17 @@
 //! Readers: one per served key. They decode, check artifacts, and put events into the owner's line.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use serde::de::DeserializeOwned;
 use socrates_kit::{BlobError, LocalBlobs};
 use socrates_link::{Ask, Bus, Presence, Serving, keys};
+use socrates_model::TraceContext;
 use socrates_model::wire::{Acquire, Beat, Control, Hello, Recorded, Release, Report, StatusAsk, Submit, Submitted};
 use tokio::sync::{mpsc, oneshot};
 
 use super::artifacts;
+use super::counts::{Counts, Refusal};
 
 /// A decoded question.
 pub(super) enum Question {
@@ -25,7 +28,7 @@ pub(super) enum Question {
 /// What stands in the owner's line.
 pub(super) enum Inbound {
     /// A question and the way back.
-    Asked(Question, Ask),
+    Asked(Question, Came),
     /// A worker's token is gone.
     Gone(String),
     /// The figures are wanted.
@@ -34,12 +37,22 @@ pub(super) enum Inbound {
     Full(BlobError),
 }
 
-/// Where artifacts are kept.
+/// The way back of a question.
+pub(super) struct Came {
+    pub(super) ask: Ask,
+    /// When it came.
+    pub(super) at: Instant,
+    /// The trace that it says it is of.
+    pub(super) trace: Option<TraceContext>,
+}
+
+/// Where artifacts are kept, and what is counted.
 #[derive(Clone)]
 pub(super) struct Disk {
     pub(super) blobs: LocalBlobs,
     /// Whether room is waited for.
     pub(super) waits: bool,
+    pub(super) counts: Counts,
 }
 
 /// Kind of the messages on a key: its last chunk.
@@ -51,17 +64,20 @@ pub(super) fn kind(key: &str) -> &str {
 pub(super) async fn read(bus: Arc<dyn Bus>, epoch: u64, mut serving: Serving, line: mpsc::Sender<Inbound>, disk: Disk) {
     let mut told_of_disk = false;
     while let Some(ask) = serving.next().await {
-        let question = match decode(&ask) {
-            Ok(question) => question,
+        let at = Instant::now();
+        let key = ask.key().to_owned();
+        let (question, trace) = match decode(&ask) {
+            Ok(read) => read,
             Err(why) => {
-                tracing::warn!(key = ask.key(), why, "a message cannot be read");
+                tracing::warn!(key, why, "a message cannot be read");
+                disk.counts.refused(&key, Refusal::Unreadable);
                 told(ask.refuse(bus.name(), epoch, &why).await);
                 continue;
             }
         };
         match checked(question, &disk.blobs).await {
             Ok(question) => {
-                if line.send(Inbound::Asked(question, ask)).await.is_err() {
+                if line.send(Inbound::Asked(question, Came { ask, at, trace })).await.is_err() {
                     return;
                 }
             }
@@ -73,10 +89,18 @@ pub(super) async fn read(bus: Arc<dyn Bus>, epoch: u64, mut serving: Serving, li
                 if !std::mem::replace(&mut told_of_disk, true) {
                     tracing::error!(%why, "artifacts cannot be written; reports stay with the workers until they can");
                 }
+                disk.counts.refused(&key, Refusal::Busy);
                 told(ask.answer(kind(keys::REPORT), bus.name(), epoch, &Recorded::Busy).await);
             }
-            Err(Refused::Said(answer)) => told(ask.answer(kind(keys::SUBMIT), bus.name(), epoch, &answer).await),
-            Err(Refused::Busy) => told(ask.answer(kind(keys::REPORT), bus.name(), epoch, &Recorded::Busy).await),
+            Err(Refused::Said(answer)) => {
+                let busy = matches!(answer, Submitted::Busy { .. });
+                disk.counts.refused(&key, if busy { Refusal::Busy } else { Refusal::Refused });
+                told(ask.answer(kind(keys::SUBMIT), bus.name(), epoch, &answer).await);
+            }
+            Err(Refused::Busy) => {
+                disk.counts.refused(&key, Refusal::Busy);
+                told(ask.answer(kind(keys::REPORT), bus.name(), epoch, &Recorded::Busy).await);
+            }
         }
     }
 }
@@ -88,19 +112,27 @@ pub(super) fn told(sent: Result<(), socrates_link::LinkError>) {
     }
 }
 
-fn decode(ask: &Ask) -> Result<Question, String> {
-    fn body<T: DeserializeOwned>(ask: &Ask) -> Result<T, String> {
-        ask.read(kind(ask.key())).map(|envelope| envelope.body).map_err(|why| why.to_string())
+fn decode(ask: &Ask) -> Result<(Question, Option<TraceContext>), String> {
+    let mut trace = None;
+    let question = question(ask, &mut trace)?;
+    Ok((question, trace))
+}
+
+fn question(ask: &Ask, trace: &mut Option<TraceContext>) -> Result<Question, String> {
+    fn read<T: DeserializeOwned>(ask: &Ask, trace: &mut Option<TraceContext>) -> Result<T, String> {
+        let envelope = ask.read(kind(ask.key())).map_err(|why| why.to_string())?;
+        *trace = envelope.traceparent;
+        Ok(envelope.body)
     }
     match ask.key() {
-        keys::HELLO => body(ask).map(Question::Hello),
-        keys::ACQUIRE => body(ask).map(Question::Acquire),
-        keys::BEAT => body(ask).map(Question::Beat),
-        keys::REPORT => body(ask).map(|report| Question::Report(Box::new(report))),
-        keys::RELEASE => body(ask).map(Question::Release),
-        keys::SUBMIT => body(ask).map(Question::Submit),
-        keys::CONTROL => body(ask).map(Question::Control),
-        keys::STATUS => body(ask).map(Question::Status),
+        keys::HELLO => read(ask, trace).map(Question::Hello),
+        keys::ACQUIRE => read(ask, trace).map(Question::Acquire),
+        keys::BEAT => read(ask, trace).map(Question::Beat),
+        keys::REPORT => read(ask, trace).map(|report| Question::Report(Box::new(report))),
+        keys::RELEASE => read(ask, trace).map(Question::Release),
+        keys::SUBMIT => read(ask, trace).map(Question::Submit),
+        keys::CONTROL => read(ask, trace).map(Question::Control),
+        keys::STATUS => read(ask, trace).map(Question::Status),
         other => Err(format!("`{other}` is not served here")),
     }
 }

@@ -8,14 +8,14 @@ use std::time::Instant;
 
 use socrates_link::{Ask, Bus, Envelope, GRANTS_VERSION, LinkError, Qos, encode, keys};
 use socrates_model::job::Stage;
-use socrates_model::wire::{Notice, StatusReply, Submitted};
+use socrates_model::wire::{Notice, Recorded, StatusReply, Submitted, Welcome};
 use socrates_orchestrator::{Answer, Row};
 use socrates_store::{Store, StoreError};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinSet;
 
-use super::metrics::Commits;
-use super::reader::{kind, told};
+use super::counts::{Counts, Refusal};
+use super::reader::{Came, kind, told};
 
 /// Steps in one transaction at most.
 const GROUP: usize = 256;
@@ -26,7 +26,7 @@ const ANSWERING: usize = 256;
 
 /// An answer and the way back.
 pub(super) struct Reply {
-    pub(super) ask: Ask,
+    pub(super) came: Came,
     pub(super) say: Say,
 }
 
@@ -98,12 +98,12 @@ impl Broken {
 pub(super) fn start(
     mut store: impl Store + 'static,
     committed: mpsc::Sender<Said>,
-    commits: Commits,
+    counts: Counts,
 ) -> std::io::Result<(mpsc::Sender<Commit>, Broken)> {
     let (line, mut steps) = mpsc::channel::<Commit>(LINE);
     let (ended, broken) = oneshot::channel();
     std::thread::Builder::new().name("job-store".to_owned()).spawn(move || {
-        let result = write(&mut store, &mut steps, &committed, &commits);
+        let result = write(&mut store, &mut steps, &committed, &counts);
         // The store is closed before anybody hears that it ended.
         drop(store);
         if ended.send(result).is_err() {
@@ -117,7 +117,7 @@ fn write(
     store: &mut impl Store,
     steps: &mut mpsc::Receiver<Commit>,
     committed: &mpsc::Sender<Said>,
-    commits: &Commits,
+    counts: &Counts,
 ) -> Result<(), StoreError> {
     while let Some(first) = steps.blocking_recv() {
         let mut rows = first.rows;
@@ -131,7 +131,7 @@ fn write(
         let began = Instant::now();
         store.save(&rows)?;
         if !rows.is_empty() {
-            commits.add(began.elapsed(), said.len());
+            counts.committed(began.elapsed(), said.len());
         }
         for said in said {
             if !said.is_empty() && committed.blocking_send(said).is_err() {
@@ -143,12 +143,20 @@ fn write(
 }
 
 /// Says what was committed, in order; answers go out side by side.
-pub(super) async fn tell(bus: Arc<dyn Bus>, epoch: u64, mut committed: mpsc::Receiver<Said>) {
+pub(super) async fn tell(bus: Arc<dyn Bus>, epoch: u64, mut committed: mpsc::Receiver<Said>, counts: Counts) {
     let mut answering = JoinSet::new();
     while let Some(said) = committed.recv().await {
         for reply in said.replies {
-            let bus = Arc::clone(&bus);
-            answering.spawn(async move { told(answer(&*bus, epoch, reply).await) });
+            let (bus, counts) = (Arc::clone(&bus), counts.clone());
+            answering.spawn(async move {
+                let (key, at) = (reply.came.ask.key().to_owned(), reply.came.at);
+                if let Some(why) = refusal(&reply.say) {
+                    counts.refused(&key, why);
+                }
+                let sent = answer(&*bus, epoch, reply).await;
+                counts.answered(&key, at.elapsed());
+                told(sent);
+            });
         }
         for (batch, notice) in said.notices {
             let key = keys::event(&batch, notice.key.scenario.as_str());
@@ -179,8 +187,25 @@ async fn grant<T: serde::Serialize>(ask: Ask, answer: Envelope<T>) -> Result<(),
     ask.reply(bytes).await
 }
 
+/// Whether an answer says no, and how. That there is no work is no refusal.
+fn refusal(say: &Say) -> Option<Refusal> {
+    let Say::Answer(answer) = say else { return None };
+    match &**answer {
+        Answer::Welcome(Welcome::Incompatible { .. }) | Answer::Submitted(Submitted::Refused { .. }) => {
+            Some(Refusal::Refused)
+        }
+        Answer::Recorded(Recorded::Busy) | Answer::Submitted(Submitted::Busy { .. }) => Some(Refusal::Busy),
+        Answer::Welcome(_)
+        | Answer::Acquired(_)
+        | Answer::Beat(_)
+        | Answer::Recorded(_)
+        | Answer::Steered(_)
+        | Answer::Submitted(_) => None,
+    }
+}
+
 async fn answer(bus: &dyn Bus, epoch: u64, reply: Reply) -> Result<(), LinkError> {
-    let Reply { ask, say } = reply;
+    let Reply { came: Came { ask, .. }, say } = reply;
     let kind = kind(ask.key()).to_owned();
     let control = ask.key() == keys::CONTROL;
     match say {

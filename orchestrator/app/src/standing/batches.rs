@@ -4,7 +4,7 @@ use std::time::Duration;
 
 #[cfg(test)]
 use socrates_model::wire::Limits;
-use socrates_model::wire::{BatchStatus, Part};
+use socrates_model::wire::{BatchStatus, Part, Priority};
 
 use crate::progress::span;
 
@@ -32,7 +32,8 @@ pub(super) fn lines(paused: &[Part], batches: &[BatchStatus], left: u32, now_ms:
 }
 
 fn line(batch: &BatchStatus, now_ms: u64) -> String {
-    let BatchStatus { name, total, done, failed, canceled, running, paused, since_ms, unmade, over, .. } = batch;
+    let BatchStatus { name, total, done, failed, canceled, running, paused, since_ms, ended_ms, unmade, over, .. } =
+        batch;
     let open = total.saturating_sub(*done);
     let mut words = format!("batch      {name:<28} {done} done · {open} open · {failed} failed");
     for (count, word) in [(*canceled, "given up"), (*running, "running"), (*unmade, "not made yet")] {
@@ -43,8 +44,19 @@ fn line(batch: &BatchStatus, now_ms: u64) -> String {
     if *paused {
         words.push_str(" · paused");
     }
-    if let Some(age_ms) = now_ms.checked_sub(*since_ms).filter(|_| *since_ms > 0) {
-        words.push_str(&format!(" · since {}", span(Duration::from_millis(age_ms).as_secs_f64())));
+    if batch.priority != Priority::Normal {
+        words.push_str(&format!(" · priority {}", batch.priority.name()));
+    }
+    let time = |ms: u64| span(Duration::from_millis(ms).as_secs_f64());
+    let known = |from: u64, to: u64| to.checked_sub(from).filter(|_| from > 0).map(time);
+    match (known(*since_ms, *ended_ms), known(*since_ms, now_ms)) {
+        // A batch that is done took its time; what comes after is no part of it.
+        (Some(took), _) => {
+            let ago = known(*ended_ms, now_ms).map_or_else(String::new, |ago| format!(", {ago} ago"));
+            words.push_str(&format!(" · done in {took}{ago}"));
+        }
+        (None, Some(age)) => words.push_str(&format!(" · since {age}")),
+        (None, None) => {}
     }
     for (taken, limit) in budgets(batch) {
         words.push_str(&format!(" · {taken} of {limit}"));
@@ -111,6 +123,13 @@ mod tests {
             line(&long, 0),
             "batch      long                         2 done · 3 open · 1 failed · 1 running · 900 not made yet · 1 min 0 s of 2 h 0 min · \
              5100 of 5000 tokens · 2 of 300 cents\n           nothing more of it is begun: the batch spent 5100 tokens"
+        );
+        let done = BatchStatus { ended_ms: 31_000, priority: Priority::Bulk, ..batch("day", false, 1_000) };
+        assert_eq!(
+            lines(&[], &[done], 0, 91_000),
+            [
+                "batch      day                          2 done · 3 open · 1 failed · 1 running · priority bulk · done in 30 s, 1 min 0 s ago"
+            ]
         );
     }
 }

@@ -271,15 +271,18 @@ pub(crate) struct Worker {
     /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
     #[arg(long, default_value = "")]
     inject: String,
+    /// File in which its log is kept, as JSON lines; see `socrates config log`.
+    #[arg(long, value_name = "FILE")]
+    log_file: Option<PathBuf>,
     #[command(flatten)]
     keys: Keys,
 }
 
 impl Worker {
     pub(super) async fn act(&self, config: &Config) -> Outcome {
-        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject, keys } = self.clone();
+        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject, log_file, keys } = self.clone();
         let config = &keys.over(config)?;
-        let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, durable, inject };
+        let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, durable, inject, log_file };
         done(process::worker(config, &options).await)
     }
 }

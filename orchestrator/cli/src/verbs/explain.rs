@@ -27,13 +27,17 @@ pub(crate) struct Explain {
     /// Folder of a run, or of `cluster up`, whose job store has the job; it is only read, also where nobody serves it.
     #[arg(long, conflicts_with = "connect")]
     dir: Option<PathBuf>,
+    /// Folder of logs, as `cluster up` and `cluster work` keep them in `logs`, whose lines about the job are shown in order of time; may be
+    /// repeated. With `--dir` its own logs are looked at anyway.
+    #[arg(long, value_name = "DIR")]
+    logs: Vec<PathBuf>,
     #[command(flatten)]
     keys: Keys,
 }
 
 impl Explain {
     pub(super) async fn act(&self, talk: &Printer, config: &config::Config) -> Outcome {
-        let Self { code, connect, namespace, dir, keys } = self;
+        let Self { code, connect, namespace, dir, logs, keys } = self;
         let at = match (connect, dir) {
             (Some(connect), _) => Where::Endpoint(connect.clone(), namespace.clone()),
             (None, Some(dir)) => Where::Folder(dir.clone()),
@@ -46,7 +50,7 @@ impl Explain {
                 "name one, such as s-1/paths; `socrates status --all` lists the scenarios",
             ));
         };
-        done(explain_job::explain(talk, &keys.over(config)?, job, &at).await)
+        done(explain_job::explain(talk, &keys.over(config)?, job, &at, logs).await)
     }
 }
 

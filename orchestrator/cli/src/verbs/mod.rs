@@ -61,6 +61,20 @@ pub(crate) struct Flags {
     /// One configuration value, such as `--set supervisor.workers=2`; may be repeated.
     #[arg(long, global = true, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+    /// How the log on standard error is written, by this process and those that it starts: with json an object a line.
+    #[arg(long, global = true, value_enum, value_name = "FORM")]
+    pub(crate) log: Option<Format>,
+}
+
+impl Flags {
+    /// Every value of the configuration that was named.
+    pub(crate) fn all(&self) -> Vec<String> {
+        let form = self.log.map(|form| match form {
+            Format::Text => "log.format=text".to_owned(),
+            Format::Json => "log.format=json".to_owned(),
+        });
+        self.set.iter().cloned().chain(form).collect()
+    }
 }
 
 /// How results are printed.
