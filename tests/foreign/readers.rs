@@ -56,6 +56,58 @@ fn the_reader_of_the_mcap_project_reads_every_message_of_a_recording() {
     assert!(states > 100, "{found}");
 }
 
+/// A reader of Parquet files, from the package index of Python.
+const ARROW: &str = "pyarrow==26.0.1";
+/// Columns of a file with their types, the number of rows, and the sum of a figure without what it lacks.
+const TABLE: &str = r#"
+import json, sys
+import pyarrow.compute, pyarrow.parquet
+table = pyarrow.parquet.read_table(sys.argv[1])
+print(json.dumps({
+    "types": {field.name: str(field.type) for field in table.schema},
+    "rows": table.num_rows,
+    "requests": table.column("request").to_pylist(),
+    "sum": pyarrow.compute.sum(table.column("path_length")).as_py(),
+}))
+"#;
+
+#[test]
+fn arrow_reads_the_table_of_a_library_as_parquet() {
+    let python = skip::installed(python("pyarrow", &[ARROW], "import pyarrow.parquet"));
+    let Some(python) = python else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("hall.toml"), WAREHOUSE).unwrap();
+    let args =
+        ["run", "hall.toml", "--variants", "4", "--repeats", "--require", "any", "--keep", "index", "--out", "library"];
+    assert_eq!(socrates(at, "made", &args).code, 0);
+    let made = socrates(at, "query", &["library", "query", "library", "--out", "runs.parquet"]);
+    let built =
+        if made.err.contains("without the feature") { Err("the program has no `parquet`".to_owned()) } else { Ok(()) };
+    if skip::installed(built).is_none() {
+        return;
+    }
+    assert_eq!(made.code, 0, "{}", made.err);
+    let out =
+        Command::new(python).arg("-c").arg(TABLE).arg("runs.parquet").current_dir(at).stdin(Stdio::null()).output();
+    let out = out.unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let found: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!((&found["rows"], &found["requests"][3]), (&4.into(), &"hall".into()), "{found}");
+    let types = &found["types"];
+    assert_eq!(
+        (&types["verdict"], &types["seed"], &types["path_length"]),
+        (&"string".into(), &"uint64".into(), &"double".into())
+    );
+    let table = std::fs::read_to_string(at.join("library/index.csv")).unwrap();
+    let column = table.lines().next().unwrap().split(',').position(|name| name == "path_length").unwrap();
+    // Nothing before it has a comma but the reason, which stands in quotes then: count from the end.
+    let behind = table.lines().next().unwrap().split(',').count() - column;
+    let cells = table.lines().skip(1).filter_map(|line| line.rsplit(',').nth(behind - 1)?.parse::<f64>().ok());
+    let sum: f64 = cells.sum();
+    assert!((found["sum"].as_f64().unwrap() - sum).abs() < 1e-6 && sum > 1.0, "{sum}: {found}");
+}
+
 #[test]
 fn films_by_ffmpeg_play_in_a_player() {
     let missing = ["ffmpeg", "ffprobe"].into_iter().find(|name| skip::program(name).is_none());

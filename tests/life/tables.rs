@@ -61,7 +61,8 @@ fn a_batch_writes_one_row_per_run_and_counts_distinct_scenarios() {
     assert_eq!(rows.len(), 12, "two requests, three variants, two seeds: {rows:?}");
     let head = std::fs::read_to_string(folder.path().join("library/index.csv")).unwrap();
     let wanted = "request,location,planner,seed,verdict,reason,kind,path,success,time_to_goal,path_length,path_efficiency,robot_speed_mean,\
-                  stalled_time,human_collisions,wall_collisions,human_distance_min,ttc_min,space_compliance,jerk_mean";
+                  stalled_time,human_collisions,wall_collisions,human_distance_min,ttc_min,space_compliance,jerk_mean,\
+                  scenario,pattern,place,people,encounter,context,density_2_5m_max";
     assert_eq!(head.lines().next(), Some(wanted));
     for row in &rows {
         assert!(["dock", "block"].contains(&row["request"].as_str()), "{row:?}");

@@ -68,12 +68,30 @@ pub struct Figures {
     pub thresholds: String,
 }
 
+/// What the scenarios cover and lack, ready to be shown: on the first page alone.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct Covered {
+    /// How many cells of each kind hold a scenario, a phrase each.
+    pub shares: Vec<String>,
+    /// Canonical scenarios, each with its count.
+    pub scenarios: Vec<Vec<String>>,
+    /// Places, each with its count.
+    pub places: Vec<Vec<String>>,
+    /// Names of the columns of [`Self::encounters`].
+    pub head: Vec<String>,
+    /// Encounter angles by density of people, as many cells as columns.
+    pub encounters: Vec<Vec<String>>,
+    /// What lacks, a sentence each.
+    pub gaps: Vec<String>,
+}
+
 /// The page while it is being filled, one scenario after another; of many scenarios several pages that lead to each other.
 #[derive(Debug, Clone, Default)]
 pub struct BatchPage {
     full: Vec<Part>,
     last: Part,
     figures: Value,
+    covered: Value,
 }
 
 /// What one page holds.
@@ -157,6 +175,11 @@ impl BatchPage {
         self.figures = json!(figures);
     }
 
+    /// Sets what the scenarios cover.
+    pub fn cover(&mut self, covered: Covered) {
+        self.covered = json!(covered);
+    }
+
     /// Says why there are no figures over all scenarios: then the page puts none together either.
     pub fn tell_none(&mut self, why: &str) {
         self.figures = json!({ "why": why });
@@ -201,6 +224,9 @@ impl BatchPage {
             .collect();
         let page = |(number, part): (usize, &&Part)| {
             let mut data = json!({ "rows": part.rows, "places": part.places.told(), "figures": self.figures });
+            if let Some(members) = data.as_object_mut().filter(|_| number == 0 && !self.covered.is_null()) {
+                members.insert("covered".to_owned(), self.covered.clone());
+            }
             if let Some(members) = data.as_object_mut().filter(|_| parts.len() > 1) {
                 members.insert("parts".to_owned(), json!({ "links": links, "here": number, "all": self.shares() }));
             }
@@ -363,6 +389,7 @@ mod tests {
         for _ in 0..2 * ON_A_PAGE + 5 {
             all.add(row.clone(), &location, None);
         }
+        all.cover(Covered { gaps: vec!["no scenario".to_owned()], ..Covered::default() });
         let pages = all.pages("hall");
         let names: Vec<&str> = pages.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["report.html", "report-2.html", "report-3.html"]);
@@ -371,6 +398,7 @@ mod tests {
         assert_eq!(counts, [ON_A_PAGE, ON_A_PAGE, 5]);
         assert_eq!(told[2]["parts"]["links"][1], json!({ "href": "report-2.html", "from": 1001, "to": 2000 }));
         assert_eq!(told[2]["parts"]["here"], 2);
+        assert!(told[0]["covered"]["gaps"][0] == "no scenario" && told[1]["covered"].is_null());
         assert_eq!(told[0]["parts"]["all"], json!({ "scenarios": 2005, "distinct": 2005, "realised": 2005 }));
         assert!(
             told.iter().all(|data| data["rows"][0]["picture"].is_object() && data["rows"][0]["file"] == "hall.tar.zst")

@@ -44,7 +44,7 @@ mod template;
 pub mod track_page;
 
 pub use annotated::annotated_map;
-pub use batch::{BatchEntry, BatchPage, BatchRow, Figures, Lies};
+pub use batch::{BatchEntry, BatchPage, BatchRow, Covered, Figures, Lies};
 pub use compare_page::{Beside, ComparePage, Head, MeanRow, MetricRow, Part, PlannerRow};
 pub use draft::draft_picture;
 pub use facts::fact_words;

@@ -1,18 +1,21 @@
 //! The page of a folder of bundles, filled from what lies in it.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::json;
 use socrates_draw::{BatchEntry, BatchPage, BatchRow, Lies};
 use socrates_model::{Likeness, Location, Report, ScenarioId, Verdict};
 use socrates_scoring::Pool;
+use socrates_stream::csv::Table;
 
 use crate::batch_stats;
 use crate::bundle::{self, Bundle};
+use crate::coverage::Coverage;
+use crate::encounters;
 use crate::exit::Complaint;
-use crate::index::{self, Index, Scenario};
+use crate::index::{self, Index, Scenario, Traits};
 use crate::keep::{Form, Keep};
 use crate::kept::{self, Kept, Lines};
 use crate::layout;
@@ -82,6 +85,8 @@ pub(crate) struct Card {
     row: BatchRow,
     runs: index::Rows,
     form: Form,
+    /// What figures need of its reports; none where they are kept elsewhere until all are made.
+    reports: Vec<Report>,
 }
 
 impl Card {
@@ -112,10 +117,17 @@ impl Card {
             reports,
             recording: bundle.runs.first().map(|(recording, _)| recording),
         });
-        let scenario = Scenario { request: bundle.manifest.request_name(), location: &location.name, path: &path };
+        let scenario = Scenario {
+            id: id.as_str(),
+            request: bundle.manifest.request_name(),
+            location: &location.name,
+            path: &path,
+            traits: Some(&traits(bundle, &location)),
+        };
         let runs = index::Rows::of(scenario, reports, &bundle.manifest.failed);
         let likeness = Likeness::of(&bundle.proposal, &bundle.paths, &location);
-        Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs, form })
+        let reports = reports.iter().map(counted).collect();
+        Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs, form, reports })
     }
 
     /// The card of a bundle that was just made for a scenario. Where the bundle is not kept, its line is written.
@@ -128,8 +140,9 @@ impl Card {
     ) -> Result<Self, Complaint> {
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
         let form = keep.form(bundle.manifest.verdict);
-        let card = Self::of(bundle, Arc::clone(location), id.as_str(), form, &reports)?;
+        let mut card = Self::of(bundle, Arc::clone(location), id.as_str(), form, &reports)?;
         if form == Form::Nothing {
+            card.reports.clear();
             let told = (card.likeness.clone(), card.row.clone(), card.runs.clone());
             lines.put(&Kept::new(card.id.clone(), card.verdict, location, told, reports), location)?;
         }
@@ -138,8 +151,9 @@ impl Card {
 
     /// The card of a scenario whose bundle was not kept.
     pub(crate) fn kept(kept: Kept, location: Arc<Location>) -> Self {
-        let Kept { scenario: id, verdict, likeness, row, runs, .. } = kept;
-        Self { verdict, likeness, id, location, row, runs, form: Form::Nothing }
+        let Kept { scenario: id, verdict, likeness, row, runs, reports, .. } = kept;
+        let reports = reports.iter().map(counted).collect();
+        Self { verdict, likeness, id, location, row, runs, form: Form::Nothing, reports }
     }
 
     /// Where its bundle lies, from the library; empty where it was not kept.
@@ -153,6 +167,20 @@ impl Card {
         // One recording at a time: a library is larger than the memory of a laptop.
         let (bundle, reports) = bundle::read_with_reports(&dir, |index, _| index == 0)?;
         Self::of(&bundle, Arc::new(bundle.location.clone()), name, form(root, name), &reports)
+    }
+}
+
+/// What a bundle's scenario is, for the table.
+fn traits(bundle: &Bundle, location: &Location) -> Traits {
+    let Bundle { request, proposal, paths, .. } = bundle;
+    let encounters: Vec<&str> =
+        encounters::sectors(proposal, paths, location).into_iter().map(encounters::Sector::name).collect();
+    Traits {
+        pattern: proposal.pattern.clone(),
+        place: proposal.place.name().to_owned(),
+        people: proposal.humans.len(),
+        encounters: encounters.join(" "),
+        context: request.social_context.clone(),
     }
 }
 
@@ -176,12 +204,13 @@ struct Held {
 impl Holds {
     fn of(root: &Path) -> Result<Self, Complaint> {
         let found: BTreeSet<String> = bundles(root)?.into_iter().collect();
-        let kept = kept::names(root)?;
         let mut holds = Self { made: Vec::new(), failed: Vec::new(), repeated: BTreeMap::new() };
-        for row in library_index::read(root).into_iter().flat_map(|library| library.scenarios) {
+        let library = library_index::read(root);
+        let kept: BTreeSet<ScenarioId> = library.iter().flat_map(|library| library.unbundled().cloned()).collect();
+        for row in library.into_iter().flat_map(|library| library.scenarios) {
             let name = row.scenario.to_string();
             let bundled = found.contains(&name);
-            if bundled || kept.contains(&name) {
+            if bundled || kept.contains(&row.scenario) {
                 holds.repeated.insert(name.clone(), row.repeats);
                 holds.made.push(Held { name, bundled });
             } else {
@@ -215,24 +244,21 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The card of a scenario, with its reports where they come with it.
-    fn next(&mut self, held: &Held) -> Result<(Card, Option<Vec<Report>>), Complaint> {
+    /// The card of a scenario.
+    fn next(&mut self, held: &Held) -> Result<Card, Complaint> {
         let name = &held.name;
         if held.bundled {
-            let card = self.cards.remove(name).map_or_else(|| Card::read(self.root, name), Ok)?;
-            return Ok((card, None));
+            return self.cards.remove(name).map_or_else(|| Card::read(self.root, name), Ok);
         }
         let reader = match &mut self.kept {
             Some(reader) => reader,
             none => none.insert(kept::Reader::open(self.root)?),
         };
-        let (mut kept, location) =
-            reader.next()?.filter(|(kept, _)| kept.scenario.as_str() == name).ok_or_else(|| {
-                let what = format!("`{}` does not hold `{name}` in its place", self.root.join(kept::FILE).display());
-                Complaint::input(what, "list and file are of two libraries: make the library again in an empty folder")
-            })?;
-        let reports = std::mem::take(&mut kept.reports);
-        Ok((Card::kept(kept, location), Some(reports)))
+        let (kept, location) = reader.next()?.filter(|(kept, _)| kept.scenario.as_str() == name).ok_or_else(|| {
+            let what = format!("`{}` does not hold `{name}` in its place", self.root.join(kept::FILE).display());
+            Complaint::input(what, "list and file are of two libraries: make the library again in an empty folder")
+        })?;
+        Ok(Card::kept(kept, location))
     }
 }
 
@@ -249,23 +275,22 @@ pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) 
     for (done, held) in holds.made.iter().enumerate() {
         progress.at(done, "");
         let name = &held.name;
-        let added = source.next(held).and_then(|(card, told)| {
-            let earlier = holds.earlier(name, &card, &mut repeats);
-            add(
-                &mut page,
-                &mut index,
-                earlier.as_ref(),
-                card,
-                told.map_or_else(|| Reports::In(root.join(name)), Reports::Here),
-            )
-        });
-        match added {
-            // What repeats another scenario is no evidence of its own.
-            Ok(Some(found)) => reports.push((name.clone(), found)),
-            Ok(None) => {}
+        match source.next(held) {
+            Ok(card) => {
+                let earlier = holds.earlier(name, &card, &mut repeats);
+                index.add(card.runs, earlier.is_some());
+                page.add(card.row, &card.location, earlier.as_ref().map(ScenarioId::as_str));
+                // What repeats another scenario is no evidence of its own.
+                if earlier.is_none() {
+                    reports.push((name.clone(), card.reports));
+                }
+            }
+            // Behind a line that cannot be read there is no other.
+            Err(why) if !held.bundled => return Err(why),
             Err(why) => {
                 page.add_failed(name, &why.what, None);
-                index.add_failed(Scenario { request: "", location: "", path: name }, &why.what, false);
+                let scenario = Scenario { id: name, request: "", location: "", path: name, traits: None };
+                index.add_failed(scenario, &why.what, false);
                 left_out.push((name.clone(), why.what));
             }
         }
@@ -287,9 +312,15 @@ pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) 
         let why = if row.reason.is_empty() { "no bundle could be made" } else { &row.reason };
         let earlier = row.repeats.as_ref().map(ScenarioId::as_str);
         page.add_failed(row.scenario.as_str(), why, earlier);
-        index.add_failed(Scenario { request: &row.request, location: "", path: "" }, why, earlier.is_some());
+        let id = row.scenario.as_str();
+        let scenario = Scenario { id, request: &row.request, location: "", path: "", traits: None };
+        index.add_failed(scenario, why, earlier.is_some());
     }
-    index.write(root)?;
+    let table = index.csv();
+    crate::files::write(&root.join(index::FILE), table.as_bytes())?;
+    if let Ok(table) = Table::read(&table) {
+        page.cover(Coverage::of(&table).told());
+    }
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let pages = page.pages(&title.unwrap_or_else(|| "Scenarios".to_owned()));
     for (name, html) in &pages {
@@ -329,28 +360,15 @@ pub(crate) fn report(talk: &Printer, root: &Path) -> Result<(), Complaint> {
     found.figures.map(|_| ())
 }
 
-/// Reports of a scenario.
-enum Reports {
-    /// At hand.
-    Here(Vec<Report>),
-    /// In the bundle at this path.
-    In(PathBuf),
-}
-
-/// Adds a scenario to page and table and hands back its reports; none where it repeats an earlier one.
-fn add(
-    page: &mut BatchPage,
-    index: &mut Index,
-    earlier: Option<&ScenarioId>,
-    card: Card,
-    reports: Reports,
-) -> Result<Option<Vec<Report>>, Complaint> {
-    index.add(card.runs, earlier.is_some());
-    page.add(card.row, &card.location, earlier.map(ScenarioId::as_str));
-    match reports {
-        _ if earlier.is_some() => Ok(None),
-        Reports::Here(reports) => Ok(Some(reports)),
-        Reports::In(bundle) => bundle::reports_in(&bundle).map(Some),
+/// What figures need of a report: those of a whole library are in memory at once.
+fn counted(report: &Report) -> Report {
+    Report {
+        clauses: Vec::new(),
+        story: Vec::new(),
+        verdict_text: String::new(),
+        robot_text: String::new(),
+        repair: None,
+        ..report.clone()
     }
 }
 

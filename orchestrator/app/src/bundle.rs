@@ -14,9 +14,7 @@ mod whole;
 
 pub(crate) use files::{PACKED, archive, unpack_beside};
 pub(crate) use page::page;
-pub(crate) use read::{
-    changed, commands, file, is_bundle, manifest, read, read_some, read_with_reports, reports, reports_in,
-};
+pub(crate) use read::{changed, commands, file, is_bundle, manifest, read, read_some, read_with_reports, reports};
 pub(crate) use whole::{copy, copy_dead, damaged, moved, whole};
 
 use std::collections::BTreeMap;

@@ -24,7 +24,7 @@ use crate::conclude::Finished;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
-use crate::keep::Keep;
+use crate::keep::{self, Keep};
 use crate::kept::Lines;
 use crate::library_index::Library;
 use crate::many::{self, Ended};
@@ -61,20 +61,23 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
     let ends = of_batch(calls::ends(bus.as_ref()).await?, options.batch.as_deref())?;
     let Some(first) = ends.first() else { return Err(empty(&options.connect)) };
     let total = total(bus.as_ref(), &first.batch).await?.max(ends.len());
-    let keep = options.keep.unwrap_or_else(|| Keep::of(total));
-    let known = Arc::new(Known { bus: Arc::clone(&bus), config: config.clone(), keep, orders: Mutex::default() });
+    let known = Arc::new(Known { bus: Arc::clone(&bus), config: config.clone(), orders: Mutex::default() });
     let library = Known::library(&known, first).await?;
     let done: Vec<PastEnd> = ends.iter().filter(|end| end.end.is_some()).cloned().collect();
     talk.line(&format!("batch      `{}` · {} of {} done", first.batch, done.len(), plural(total, "scenario")));
     let root = match place::place(&options.out, library, false) {
         Place::Finished(root) | Place::New(root) => place::told(talk, &options.out, root),
     };
+    let fixed = keep::agreed(&root, place::fixed(&root), options.keep)?;
+    let keep = fixed.unwrap_or_else(|| Keep::of(total));
     let work = place::claim(&root, library)?;
+    place::fix(&work, keep)?;
     Lines::of(&work).adopt(&root)?;
     let hold = Hold::take(&work)?;
-    let made = bundles(talk, &known, &done, &root, &work, &hold).await?;
+    let into = Into { root: &root, work: &work, keep };
+    let made = bundles(talk, &known, &done, into, &hold).await?;
     bus.close().await;
-    many::write(talk, &root, &work, Library::new(library, None, total, known.readings()), made)?;
+    many::write(talk, &root, &work, Library::new(library, None, Some(keep), total, known.readings()), made)?;
     drop(std::fs::remove_dir_all(&work));
     let code = many::finish(talk, Require::Any, &root, &[])?;
     if done.len() < ends.len() {
@@ -128,8 +131,7 @@ async fn bundles(
     talk: &Printer,
     known: &Arc<Known>,
     done: &[PastEnd],
-    root: &Path,
-    work: &Path,
+    into: Into<'_>,
     hold: &Hold,
 ) -> Result<Vec<Ended>, Complaint> {
     let at_once = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -141,8 +143,9 @@ async fn bundles(
         while tasks.len() < at_once
             && let Some(end) = waiting.next()
         {
-            let (known, end, root, work) = (Arc::clone(known), end.clone(), root.to_path_buf(), work.to_path_buf());
-            tasks.spawn(async move { (end.place, known.bundle(&end, &root, &work).await) });
+            let (known, end, keep) = (Arc::clone(known), end.clone(), into.keep);
+            let (root, work) = (into.root.to_path_buf(), into.work.to_path_buf());
+            tasks.spawn(async move { (end.place, known.bundle(&end, Into { root: &root, work: &work, keep }).await) });
         }
         let Some(came) = tasks.join_next().await else { break };
         let (place, ended) = came.map_err(|broke| {
@@ -155,11 +158,18 @@ async fn bundles(
     Ok(made.into_values().collect())
 }
 
+/// The library that is collected into.
+#[derive(Debug, Clone, Copy)]
+struct Into<'a> {
+    root: &'a Path,
+    work: &'a Path,
+    keep: Keep,
+}
+
 /// What was fetched once and serves all scenarios of a request.
 struct Known {
     bus: Arc<dyn Bus>,
     config: Config,
-    keep: Keep,
     orders: Mutex<BTreeMap<Digest, Request>>,
 }
 
@@ -194,10 +204,11 @@ impl Known {
     }
 
     /// The bundle of a scenario, fetched and written unless it lies there.
-    async fn bundle(self: Arc<Self>, end: &PastEnd, root: &Path, work: &Path) -> Result<Ended, Complaint> {
+    async fn bundle(self: Arc<Self>, end: &PastEnd, into: Into<'_>) -> Result<Ended, Complaint> {
         let rows = self.rows(end).await?;
         let (known, handle) = (self, Handle::current());
-        let (id, place, root, work) = (end.scenario.clone(), end.place, root.to_path_buf(), work.to_path_buf());
+        let (id, place, keep) = (end.scenario.clone(), end.place, into.keep);
+        let (root, work) = (into.root.to_path_buf(), into.work.to_path_buf());
         blocking(move || {
             let fetch = |digest: &Digest| known.get(&handle, digest);
             let spec = rows.scenarios.first().map(|scenario| scenario.spec.clone());
@@ -209,7 +220,7 @@ impl Known {
             if bundle::lies_in(&dir, prepared, spec.seed) {
                 return Ok(Ended { what: Ok(Card::read(&root, id.as_str())?), scenario: id, request: name });
             }
-            let (lines, keep) = (Lines::of(&work), known.keep);
+            let lines = Lines::of(&work);
             if let Some((kept, _)) = lines.get(&id) {
                 let card = Card::kept(kept, Arc::clone(&request.location));
                 return Ok(Ended { what: Ok(card), scenario: id, request: name });

@@ -70,6 +70,10 @@ fn words(talk: &Printer) {
         let first = word.about.split_inclusive(". ").next().unwrap_or(word.about);
         talk.line(&format!("  {:<22} {}", word.names.first().unwrap_or(&""), first.trim_end()));
     }
+    talk.line("Coverage");
+    for (name, about) in crate::coverage::WORDS {
+        talk.line(&format!("  {name:<22} {}", about.split_inclusive(". ").next().unwrap_or(about).trim_end()));
+    }
     talk.result(&json!({
         "words": all.iter().map(|word| json!({ "word": word.names.first(), "also": word.names.get(1..), "section": word.section, "about": word.about })).collect::<Vec<_>>(),
     }));
@@ -80,6 +84,7 @@ enum Page {
     Metric(&'static Family, &'static Sheet),
     Fault(FaultCode),
     Word(socrates_model::words::Word),
+    Coverage(&'static str, &'static str),
 }
 
 /// The page of a metric, a code or a word, whatever its case and with blanks for `_`.
@@ -88,7 +93,11 @@ fn page(text: &str) -> Option<Page> {
     let mut sheets = CATALOG.iter().flat_map(|family| family.sheets.iter().map(move |sheet| (family, sheet)));
     let metric = sheets.find(|(_, sheet)| sheet.id == id).map(|(family, sheet)| Page::Metric(family, sheet));
     let code = || text.trim().to_uppercase().parse().ok().map(Page::Fault);
-    metric.or_else(code).or_else(|| socrates_model::words::word(text).map(Page::Word))
+    let covered = || {
+        let mut words = crate::coverage::WORDS.iter();
+        words.find(|(name, _)| name.replace(' ', "_") == id).map(|(name, about)| Page::Coverage(name, about))
+    };
+    metric.or_else(code).or_else(|| socrates_model::words::word(text).map(Page::Word)).or_else(covered)
 }
 
 /// What is nearest to a word that nobody knows.
@@ -97,6 +106,7 @@ fn near(text: &str) -> Vec<String> {
     let words = socrates_model::words::words();
     let known = FaultCode::ALL.iter().map(|code| code.code().to_owned());
     let known = known.chain(CATALOG.iter().flat_map(|family| family.sheets).map(|sheet| sheet.id.to_owned()));
+    let known = known.chain(crate::coverage::WORDS.iter().map(|(name, _)| (*name).to_owned()));
     let known = known.chain(words.iter().flat_map(|word| &word.names).map(|name| (*name).to_owned()));
     let mut all: Vec<(f64, String)> = known
         .map(|name| (strsim::jaro_winkler(&name.to_lowercase().replace(['_', '-'], " "), &wanted), name))
@@ -140,6 +150,11 @@ pub fn explain(talk: &Printer, what: &[String]) -> Result<(), Complaint> {
             talk.result(
                 &json!({ "word": word.names.first(), "also": word.names.get(1..), "section": word.section, "about": word.about }),
             );
+        }
+        Some(Page::Coverage(word, about)) => {
+            talk.line(&format!("{word} (coverage)"));
+            talk.line(about);
+            talk.result(&json!({ "word": word, "also": [], "section": "Coverage", "about": about }));
         }
         None => {
             let near = near(&what);

@@ -1,8 +1,12 @@
 //! What a library keeps of its scenarios, beside the list, the page and the tables.
 
+use std::path::Path;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
 use socrates_model::Verdict;
+
+use crate::exit::Complaint;
 
 /// Libraries of more scenarios than this have packed bundles, unless something else is asked for: folders are nice to look into, and a
 /// hundred thousand of them are two million files.
@@ -20,7 +24,8 @@ pub enum Form {
 }
 
 /// Which bundles a library keeps, and in which form.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Keep {
     /// All, as folders.
     Folders,
@@ -65,6 +70,28 @@ impl Keep {
     }
 }
 
+/// What is kept in a folder: what was fixed when it was begun, else what is asked for.
+///
+/// # Errors
+/// Something else is asked for than was fixed: what was made would have to be made again.
+pub(crate) fn agreed(root: &Path, fixed: Option<Keep>, asked: Option<Keep>) -> Result<Option<Keep>, Complaint> {
+    match (fixed, asked) {
+        (Some(fixed), Some(asked)) if fixed != asked => Err(Complaint::input(
+            format!(
+                "`{}` was begun with `--keep {}`, and `--keep {}` does not change what lies in it",
+                root.display(),
+                fixed.name(),
+                asked.name()
+            ),
+            format!(
+                "leave `--keep` out to go on with it, or make a library beside it: `--keep {} --out ANOTHER`",
+                asked.name()
+            ),
+        )),
+        (fixed, asked) => Ok(fixed.or(asked)),
+    }
+}
+
 impl FromStr for Keep {
     type Err = String;
 
@@ -89,6 +116,11 @@ mod tests {
             [Verdict::Realised, Verdict::Contradicted, Verdict::NotTriggered].map(|one| Keep::Failed.form(one));
         assert_eq!(failed, [Form::Nothing, Form::Packed, Form::Packed]);
         assert_eq!(Keep::Index.form(Verdict::Contradicted), Form::Nothing);
+        let agreed = |fixed, asked| agreed(Path::new("lib"), fixed, asked);
+        assert_eq!(agreed(None, Some(Keep::Index)).unwrap(), Some(Keep::Index));
+        assert_eq!(agreed(Some(Keep::Packed), None).unwrap(), Some(Keep::Packed));
+        let why = agreed(Some(Keep::Index), Some(Keep::Packed)).unwrap_err();
+        assert!(why.what.contains("`--keep index`") && why.hint.contains("--keep packed --out"), "{why}");
         assert_eq!((Keep::of(1_000), Keep::of(1_001)), (Keep::Folders, Keep::Packed));
     }
 }

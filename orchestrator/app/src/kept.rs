@@ -104,6 +104,11 @@ impl Lines {
         write(&self.path(&format!("scenario-{}", kept.scenario)), &Line::Scenario(Box::new(kept.clone())))
     }
 
+    /// Whether the line of a scenario is there.
+    pub(crate) fn has(&self, scenario: &ScenarioId) -> bool {
+        self.path(&format!("scenario-{scenario}")).is_file()
+    }
+
     /// What was kept of a scenario and where it happened, if its line is there.
     pub(crate) fn get(&self, scenario: &ScenarioId) -> Option<(Kept, Location)> {
         let Line::Scenario(kept) = read(&self.path(&format!("scenario-{scenario}")))? else { return None };

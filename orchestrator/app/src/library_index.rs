@@ -6,9 +6,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use socrates_checks::check_repeats;
 use socrates_model::likeness::Kind;
-use socrates_model::{Digest, Likeness, Reading, ScenarioEnd, ScenarioId};
+use socrates_model::{Digest, Likeness, Reading, ScenarioEnd, ScenarioId, Verdict};
 
+use crate::bundle;
 use crate::exit::{Code, Complaint};
+use crate::keep::Keep;
 use crate::shard::Shard;
 
 /// A scenario is compared with at most so many different ones of its kind, the newest: a library of a hundred thousand is no reason
@@ -65,6 +67,9 @@ pub(crate) struct Library {
     /// Which share of a batch it is; none where it is whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) shard: Option<Part>,
+    /// Which bundles it keeps; none in lists of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) keep: Option<Keep>,
     /// Scenarios asked for.
     pub(crate) count: u64,
     /// Readings of its requests.
@@ -171,9 +176,39 @@ fn counted<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
 
 impl Library {
     /// A library of `count` scenarios, before any of them is listed.
-    pub(crate) fn new(wish: Digest, shard: Option<Part>, count: usize, readings: Vec<Reading>) -> Self {
+    pub(crate) fn new(
+        wish: Digest,
+        shard: Option<Part>,
+        keep: Option<Keep>,
+        count: usize,
+        readings: Vec<Reading>,
+    ) -> Self {
         let count = u64::try_from(count).unwrap_or(u64::MAX);
-        Self { wish, shard, count, readings, scenarios: Vec::new() }
+        Self { wish, shard, keep, count, readings, scenarios: Vec::new() }
+    }
+
+    /// Which bundles it keeps: as it says, else as its bundles lie; none where they leave it open.
+    pub(crate) fn keeps(&self) -> Option<Keep> {
+        let made = || self.scenarios.iter().filter(|row| row.verdict != ScenarioEnd::Failed);
+        let by_bundles = || {
+            let is_realised = |row: &Row| row.verdict == ScenarioEnd::Judged(Verdict::Realised);
+            let bundled = made().filter(|row| !row.bundle.is_empty()).count();
+            let packed = made().any(|row| row.bundle.ends_with(bundle::PACKED));
+            match (bundled, made().count()) {
+                (0, _) => made().any(|row| !is_realised(row)).then_some(Keep::Index),
+                (some, all) if some < all => Some(Keep::Failed),
+                // Of those that were not realised alone, it may be those or all that are kept.
+                _ if packed => made().any(is_realised).then_some(Keep::Packed),
+                _ => Some(Keep::Folders),
+            }
+        };
+        self.keep.or_else(by_bundles)
+    }
+
+    /// Names of the scenarios whose bundles it does not keep.
+    pub(crate) fn unbundled(&self) -> impl Iterator<Item = &ScenarioId> {
+        let kept = self.scenarios.iter().filter(|row| row.bundle.is_empty() && row.verdict != ScenarioEnd::Failed);
+        kept.map(|row| &row.scenario)
     }
 
     /// Scenarios that repeat no earlier one.
@@ -253,6 +288,7 @@ mod tests {
         let mut library = Library {
             wish: Digest::of(b"wish"),
             shard: None,
+            keep: None,
             count: 4,
             readings: Vec::new(),
             scenarios: vec![

@@ -10,7 +10,7 @@ use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 use crate::bundler::{Bundled, Bundler};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
-use crate::keep::Keep;
+use crate::keep::{self, Keep};
 use crate::kept::Lines;
 use crate::output::Printer;
 use crate::place::{self, Place};
@@ -19,6 +19,7 @@ use crate::reading::print_reading;
 use crate::refused::Refused;
 use crate::run_options::{Require, RunOptions};
 use crate::session::Making;
+use crate::shard::Shard;
 use crate::wanted::{Wanted, wanted};
 use crate::words::plural;
 use crate::{bundle, index, layout, library_index, next, variants};
@@ -41,18 +42,18 @@ pub(crate) async fn batch(
     refused: &[Refused],
 ) -> Result<Library, Complaint> {
     told_apart(&mut prepared);
-    let share = options.shard.map_or_else(String::new, |shard| format!("-{}-of-{}", shard.index(), shard.of()));
-    let own = || PathBuf::from("runs").join(format!("library-{}{share}", options.seed));
-    let base = options.out.clone().unwrap_or_else(own);
+    let base = base(options);
     let (wish, part) = wish(&prepared, options);
     let root = match place::place(&base, wish, prepared.iter().any(Prepared::is_driven)) {
         Place::Finished(root) => {
+            keep::agreed(&root, place::fixed(&root), options.keep)?;
             talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
             let code = finish(talk, options.require, &root, refused)?;
             return Ok(Library { root, code });
         }
         Place::New(root) => place::told(talk, &base, root),
     };
+    let fixed = keep::agreed(&root, place::fixed(&root), options.keep)?;
     crate::authors::check(config, prepared.iter().map(|one| &one.author)).await?;
     let work = place::claim(&root, wish)?;
     for one in &prepared {
@@ -61,26 +62,41 @@ pub(crate) async fn batch(
     }
     let prepared: Vec<Arc<Prepared>> = prepared.into_iter().map(Arc::new).collect();
     let plans = variants::plans(talk, prepared.iter().map(AsRef::as_ref), options.seed, options.repeats)?;
-    let mut wanted = wanted(&prepared, options.seed, &plans)?;
-    if let Some(shard) = options.shard {
-        let whole = wanted.len();
-        let mut place = 0..whole;
-        wanted.retain(|_| place.next().is_some_and(|place| shard.holds(place)));
-        talk.line(&format!("shard      {shard} · {} of {}", wanted.len(), plural(whole, "scenario")));
-    }
-    let keep = options.keep.unwrap_or_else(|| Keep::of(wanted.len()));
+    let wanted = wanted(&prepared, options.seed, &plans)?;
+    // Shards keep what one run would.
+    let keep = fixed.unwrap_or_else(|| Keep::of(wanted.len()));
+    place::fix(&work, keep)?;
+    let wanted = shared(talk, options.shard, wanted);
     let mut bundler = Bundler::start(&root, &work, keep, &wanted, &prepared);
     // Until the last bundle is written, nobody else makes them. Of more shards than scenarios some are empty.
     let making = Making { talk, config, options, work: &work, wanted: &wanted };
     let _hold = if wanted.is_empty() { None } else { Some(making.bundled(&mut bundler).await?) };
     let made = ended(&wanted, bundler.finish(talk).await?);
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
-    let list = library_index::Library::new(wish, part, wanted.len(), readings);
+    let list = library_index::Library::new(wish, part, Some(keep), wanted.len(), readings);
     write(talk, &root, &work, list, made)?;
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
     let code = finish(talk, options.require, &root, refused)?;
     Ok(Library { root, code })
+}
+
+/// The folder of a library where nothing else stands in it.
+pub(crate) fn base(options: &RunOptions) -> PathBuf {
+    let share = options.shard.map_or_else(String::new, |shard| format!("-{}-of-{}", shard.index(), shard.of()));
+    let own = || PathBuf::from("runs").join(format!("library-{}{share}", options.seed));
+    options.out.clone().unwrap_or_else(own)
+}
+
+/// The share of these scenarios that is made.
+pub(crate) fn shared<'a>(talk: &Printer, shard: Option<Shard>, mut wanted: Vec<Wanted<'a>>) -> Vec<Wanted<'a>> {
+    if let Some(shard) = shard {
+        let whole = wanted.len();
+        let mut place = 0..whole;
+        wanted.retain(|_| place.next().is_some_and(|place| shard.holds(place)));
+        talk.line(&format!("shard      {shard} · {} of {}", wanted.len(), plural(whole, "scenario")));
+    }
+    wanted
 }
 
 /// What a folder is made from, and of which batch it is a share. With other options another folder is taken.
@@ -156,7 +172,10 @@ pub(crate) fn write(
             Ok(card) => {
                 let earlier = repeats.of(&scenario, card.likeness.clone());
                 let (verdict, bundle) = (ScenarioEnd::Judged(card.verdict), card.lies());
-                cards.insert(scenario.to_string(), card);
+                // The others are read from the file of the library, one at a time.
+                if !bundle.is_empty() {
+                    cards.insert(scenario.to_string(), card);
+                }
                 (verdict, earlier, String::new(), bundle)
             }
             Err(why) => {

@@ -90,7 +90,9 @@ pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> 
     hold.check()?;
     let made = pieces.iter().zip(came.into_iter().flatten()).map(|(piece, what)| ended(piece.row, what));
     let made = made.collect::<Result<Vec<Ended>, Complaint>>()?;
-    let list = Library::new(wish, None, pieces.len(), first.library.readings.clone());
+    let keeps = |one: &Found| one.library.keep;
+    let keep = keeps(first).filter(|keep| shards.iter().all(|one| keeps(one) == Some(*keep)));
+    let list = Library::new(wish, None, keep, pieces.len(), first.library.readings.clone());
     many::write(talk, &root, &work, list, made)?;
     drop(std::fs::remove_dir_all(&work));
     many::finish(talk, Require::Any, &root, &[])
@@ -276,6 +278,7 @@ mod tests {
         let library = Library {
             wish: Digest::of(format!("{whole} {shard}").as_bytes()),
             shard: Some(part),
+            keep: None,
             count: u64::try_from(rows.len()).unwrap(),
             readings: Vec::new(),
             scenarios: rows.iter().map(row).collect(),

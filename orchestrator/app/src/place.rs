@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use socrates_model::{Digest, ScenarioEnd, ScenarioId};
 
 use crate::exit::Complaint;
+use crate::keep::Keep;
 use crate::output::Printer;
 use crate::{bundle, library_index};
 
@@ -12,6 +13,8 @@ use crate::{bundle, library_index};
 pub(crate) const WORK: &str = ".socrates";
 /// File in it that holds the digest of the wish.
 const WISH: &str = "wish";
+/// File in it that says which bundles a library keeps that is being made.
+const KEEP: &str = "keep";
 /// File in it that says how a scenario ended of which no bundle could be made.
 const ENDED: &str = "ended";
 
@@ -54,8 +57,26 @@ pub(crate) fn told(talk: &Printer, named: &Path, dir: PathBuf) -> PathBuf {
             named.display(),
             dir.display()
         ));
+        if library_index::read(named).is_some() {
+            talk.line(&format!(
+                "fixed      `{}` was made from other requests, seeds, variants, planners, author, `--shard` or `--repeats`, or by another \
+                 version; these name a library",
+                named.display()
+            ));
+        }
     }
     dir
+}
+
+/// Which bundles the library of this folder keeps, as it was fixed when it was begun; none where nothing was.
+pub(crate) fn fixed(root: &Path) -> Option<Keep> {
+    let begun = || std::fs::read_to_string(root.join(WORK).join(KEEP)).ok()?.trim().parse().ok();
+    library_index::read(root).and_then(|library| library.keeps()).or_else(begun)
+}
+
+/// Fixes which bundles are kept in the library of this work folder.
+pub(crate) fn fix(work: &Path, keep: Keep) -> Result<(), Complaint> {
+    crate::files::write(&work.join(KEEP), keep.name().as_bytes())
 }
 
 /// Makes the work folder and marks it with the wish, so that the same command resumes it. What ended without a bundle is begun
@@ -109,6 +130,17 @@ mod tests {
         ] {
             assert_eq!(named_like(Path::new(dir), other()).as_str(), name);
         }
+    }
+
+    #[test]
+    fn what_is_kept_is_fixed_when_a_library_is_begun() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        assert_eq!(fixed(root), None);
+        fix(&claim(root, Digest::of(b"one")).unwrap(), Keep::Index).unwrap();
+        assert_eq!(fixed(root), Some(Keep::Index));
+        claim(root, Digest::of(b"one")).unwrap();
+        assert_eq!(fixed(root), Some(Keep::Index), "the same again goes on with it");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use serde_json::{Value, json};
-use socrates_stream::csv::{Table, joined};
+use socrates_stream::csv::{Row, Table, joined};
 
 use crate::exit::{Code, Complaint};
 use crate::files;
@@ -97,6 +97,21 @@ pub struct QueryOptions {
     pub columns: Vec<String>,
     /// Whether only the folders are printed, each once.
     pub paths: bool,
+    /// File that the rows are written to instead of being printed: `.csv`, or `.parquet` with the feature of this name.
+    pub out: Option<PathBuf>,
+}
+
+/// The table of runs of a library.
+///
+/// # Errors
+/// A folder without one, or one that cannot be read.
+pub(crate) fn table(library: &Path) -> Result<Table, Complaint> {
+    let path = library.join(index::FILE);
+    let hint = "name a library; `socrates report FOLDER` writes the table of any folder of bundles";
+    let text = files::text(&path, MAX_BYTES, hint)?;
+    Table::read(&text).map_err(|why| {
+        Complaint::input(format!("`{}`: {why}", path.display()), "`socrates report FOLDER` writes it anew")
+    })
 }
 
 /// Prints the rows as a table of the same form, or the folders.
@@ -104,19 +119,20 @@ pub struct QueryOptions {
 /// # Errors
 /// A folder without a table, a table that cannot be read, a column that it lacks.
 pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Complaint> {
-    let path = options.library.join(index::FILE);
-    let text = files::text(
-        &path,
-        MAX_BYTES,
-        "name a library; `socrates report FOLDER` writes the table of any folder of bundles",
-    )?;
-    let table = Table::read(&text).map_err(|why| {
-        Complaint::input(format!("`{}`: {why}", path.display()), "`socrates report FOLDER` writes it anew")
-    })?;
+    let form = options.out.as_deref().map(Written::of).transpose()?;
+    let table = table(&options.library)?;
     let place = |name: &str| {
         let lacks = || {
             let all = table.head.cells.join(", ");
-            Complaint::input(format!("the table has no column `{name}`"), format!("columns: {all}"))
+            let hint = if index::COVERED.contains(&name) {
+                format!(
+                    "`socrates library gallery {}` writes tables of earlier versions anew",
+                    files::shell(&options.library)
+                )
+            } else {
+                format!("columns: {all}")
+            };
+            Complaint::input(format!("the table has no column `{name}`"), hint)
         };
         table.column(name).ok_or_else(lacks)
     };
@@ -133,17 +149,19 @@ pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Complaint> 
         .filter(|row| conditions.iter().all(|(at, one)| one.holds(row.cell(*at).unwrap_or_default())))
         .collect();
     let folders = folders(&options.library, rows.iter().filter_map(|row| row.cell(folder)));
-    if options.paths {
+    if let (Some(form), Some(out)) = (form, &options.out) {
+        form.write(out, &table, &shown, &rows)?;
+        talk.line(&format!("wrote      {}", out.display()));
+    } else if options.paths {
         folders.iter().for_each(|path| talk.line(path));
     } else {
-        let line = |row: &socrates_stream::csv::Row| joined(shown.iter().map(|at| row.cell(*at).unwrap_or_default()));
-        talk.line(&line(&table.head));
-        rows.iter().for_each(|row| talk.line(&line(row)));
+        talk.line(&line(&shown, &table.head));
+        rows.iter().for_each(|row| talk.line(&line(&shown, row)));
     }
     // A library that keeps no bundles has no places to count.
     let within = if folders.is_empty() { String::new() } else { format!(" in {}", plural(folders.len(), "scenario")) };
     talk.warn(&format!("{} of {}{within}", plural(rows.len(), "run"), table.rows.len()));
-    let object = |row: &&socrates_stream::csv::Row| -> Value {
+    let object = |row: &&Row| -> Value {
         let cells = shown.iter().map(|at| (table.head.cell(*at), row.cell(*at)));
         cells
             .filter_map(|(name, cell)| Some((name?.to_owned(), json!(cell?))))
@@ -152,6 +170,57 @@ pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Complaint> 
     };
     talk.result(&json!({ "runs": rows.iter().map(object).collect::<Vec<_>>(), "scenarios": folders }));
     Ok(Code::Ok)
+}
+
+/// The cells of these columns as a line of a table.
+fn line(shown: &[usize], row: &Row) -> String {
+    joined(shown.iter().map(|at| row.cell(*at).unwrap_or_default()))
+}
+
+/// A form in which rows are written to a file; the ending of its name says which.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Written {
+    Csv,
+    Parquet,
+}
+
+impl Written {
+    fn of(out: &Path) -> Result<Self, Complaint> {
+        match out.extension().and_then(|ending| ending.to_str()) {
+            Some("csv") => Ok(Self::Csv),
+            Some("parquet") if cfg!(feature = "parquet") => Ok(Self::Parquet),
+            Some("parquet") => Err(Complaint::input(
+                format!("cannot write `{}`: this program was built without the feature `parquet`", out.display()),
+                "use `.csv`, or build it with `cargo build --release -p socrates --features parquet`",
+            )),
+            _ => Err(Complaint::input(
+                format!("cannot write `{}`: its ending says no form of a table", out.display()),
+                "use `.csv` or `.parquet`",
+            )),
+        }
+    }
+
+    fn write(self, out: &Path, table: &Table, shown: &[usize], rows: &[&Row]) -> Result<(), Complaint> {
+        match self {
+            Self::Csv => {
+                let lines = std::iter::once(&table.head).chain(rows.iter().copied());
+                let text: String = lines.map(|row| line(shown, row) + "\n").collect();
+                files::write(out, text.as_bytes())
+            }
+            Self::Parquet => parquet(out, table, shown, rows),
+        }
+    }
+}
+
+#[cfg(feature = "parquet")]
+fn parquet(out: &Path, table: &Table, shown: &[usize], rows: &[&Row]) -> Result<(), Complaint> {
+    let columns: Vec<(usize, &str)> = shown.iter().filter_map(|at| Some((*at, table.head.cell(*at)?))).collect();
+    crate::parquet_file::write(out, &columns, rows)
+}
+
+#[cfg(not(feature = "parquet"))]
+fn parquet(out: &Path, _: &Table, _: &[usize], _: &[&Row]) -> Result<(), Complaint> {
+    Written::of(out).map(|_| ())
 }
 
 /// The folders as a shell finds them, each once, in the order of the table.
@@ -182,6 +251,17 @@ mod tests {
         assert!(holds("reason~NO WAY", "there is no way") && !holds("reason~door", "there is no way"));
         assert!(!holds("a<10", "") && !holds("a>-10", ""), "what has no value is neither smaller nor larger");
         assert!(holds("reason=", "") && holds("a=x=y", "x=y"));
+    }
+
+    #[test]
+    fn the_ending_of_a_file_says_its_form() {
+        assert_eq!(Written::of(Path::new("runs.csv")).unwrap(), Written::Csv);
+        let odd = Written::of(Path::new("runs.xlsx")).unwrap_err();
+        assert!(odd.what.contains("runs.xlsx") && odd.hint.contains(".parquet"), "{odd}");
+        match Written::of(Path::new("runs.parquet")) {
+            Ok(form) => assert!(form == Written::Parquet && cfg!(feature = "parquet")),
+            Err(why) => assert!(why.hint.contains("--features parquet") && !cfg!(feature = "parquet"), "{why}"),
+        }
     }
 
     #[test]

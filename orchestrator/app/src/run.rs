@@ -24,7 +24,7 @@ use crate::run_options::RunOptions;
 use crate::session::Making;
 use crate::view::viewing::Viewing;
 use crate::wanted::Wanted;
-use crate::{layout, many, next, shard, stages, work};
+use crate::{dry_run, layout, many, next, shard, stages, work};
 
 /// The shipped request of `demo`.
 const DEMO: (&str, &str) = ("hospital", "elevator");
@@ -82,10 +82,27 @@ pub async fn run(
     options: &RunOptions,
 ) -> Result<Code, Complaint> {
     let (prepared, refused) = prepared_all(config, requests, options)?;
+    if options.dry_run {
+        checked(options, &prepared)?;
+        return dry_run::tell(talk, config, options, prepared, &refused).await;
+    }
     if refused.is_empty() {
         return single_or_batch(talk, config, options, prepared).await;
     }
     made(talk, config, options, prepared, &refused).await.map(|library| library.code)
+}
+
+/// The same, into a library also where there is one scenario.
+pub async fn build(
+    talk: &Printer,
+    config: &Config,
+    requests: &[PathBuf],
+    options: &RunOptions,
+) -> Result<Code, Complaint> {
+    if options.dry_run {
+        return run(talk, config, requests, options).await;
+    }
+    library(talk, config, requests, options).await.map(|library| library.code)
 }
 
 /// Runs request files into a folder of scenarios, also where there is one.
@@ -96,7 +113,14 @@ pub(crate) async fn library(
     options: &RunOptions,
 ) -> Result<Library, Complaint> {
     let (prepared, refused) = prepared_all(config, requests, options)?;
-    checked(options, &prepared)?;
+    // That one scenario is kept or not is a question in a library.
+    checked(&RunOptions { keep: None, ..options.clone() }, &prepared)?;
+    if options.view {
+        return Err(Complaint::input(
+            "`--view` shows a scenario that is made alone",
+            "`socrates view FOLDER` in another terminal shows the folder of a library",
+        ));
+    }
     if options.ask {
         return Err(Complaint::input(
             "`--ask` looks at a scenario while it is made alone",

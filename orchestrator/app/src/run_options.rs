@@ -46,6 +46,8 @@ pub struct RunOptions {
     pub shard: Option<Shard>,
     /// Which bundles a library keeps; none decides by the number of scenarios.
     pub keep: Option<Keep>,
+    /// Whether nothing is made, and it is said what would be.
+    pub dry_run: bool,
     /// Author.
     pub author: Option<AuthorSpec>,
     /// Pace of the simulation: `max`, or simulated seconds per second.
@@ -76,6 +78,7 @@ impl RunOptions {
             repeats: false,
             shard: None,
             keep: None,
+            dry_run: false,
             author: None,
             pace: "max".to_owned(),
             require: Require::Any,

@@ -9,8 +9,8 @@ use socrates_author::offline::Offline;
 use socrates_author::{Asking, Author as _, AuthorContext, Says, Written, attempt, llm};
 use socrates_llm::estimate::{picture_tokens, png_size, request_tokens};
 use socrates_llm::{Detail, Dialect};
-use socrates_model::Request;
 use socrates_model::job::Stage;
+use socrates_model::{Location, Reading, Request};
 use socrates_prompts::{BehaviorsForm, Image, Mode, PathsForm, Question, Style};
 
 use crate::exit::{Code, Complaint};
@@ -72,6 +72,11 @@ async fn questions() -> Result<Vec<Question>, Complaint> {
     let location =
         socrates_maps::shipped::load(&request.location).map_err(|_faults| ours("a shipped location is broken"))?;
     let reading = socrates_offline::read(&request, &location);
+    questions_of(request, reading, location).await
+}
+
+/// The same of any request.
+async fn questions_of(request: Request, reading: Reading, location: Location) -> Result<Vec<Question>, Complaint> {
     let mut question = Question::first(request, reading, location, 1);
     let answer = AuthorContext::default().answer(&question, &Asking::offline()).await;
     let answer = answer.map_err(|_refusal| ours("the offline author has no answer"))?;
@@ -79,6 +84,25 @@ async fn questions() -> Result<Vec<Question>, Complaint> {
         question.proposal = Some(proposal);
     }
     Ok(STAGES.map(|stage| Question { stage, ..question.clone() }).into())
+}
+
+/// Tokens that a model is sent and answers, by stage, for one scenario of a request when every answer is taken: questions in this style
+/// are counted as they are, answers are as long as those of the offline author.
+pub(crate) async fn expected(
+    request: &Request,
+    reading: &Reading,
+    location: &Location,
+    style: &Style,
+) -> Result<Vec<(Stage, [usize; 2])>, Complaint> {
+    let tokenizer = tiktoken_rs::o200k_base_singleton();
+    let mut found = Vec::new();
+    for question in questions_of(request.clone(), reading.clone(), location.clone()).await? {
+        let counted = count(&question, style)?;
+        let answer = Offline.ask(&question).await.map_err(|why| ours(&why.message))?.text;
+        let sent = counted.words + counted.form + counted.picture;
+        found.push((question.stage, [sent, tokenizer.encode_ordinary(&answer).len()]));
+    }
+    Ok(found)
 }
 
 fn styles() -> [(&'static str, Style); 8] {

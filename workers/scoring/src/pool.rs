@@ -16,6 +16,9 @@ use socrates_stats::{Bootstrap, Interval, Z_95, bootstrap_mean, bootstrap_median
 
 use crate::metrics::{Aggregation, Direction, Sheet, sheet};
 
+/// Of more scenarios than this there are no cells of single ones: 150 metrics of 10 000 scenarios would be a table of 150 MB.
+const BY_SCENARIO: usize = 1_000;
+
 /// One run of a batch.
 #[derive(Debug, Clone, Copy)]
 pub struct PooledRun<'a> {
@@ -68,7 +71,8 @@ pub struct Pool {
     pub thresholds: String,
     /// Scenarios there are.
     pub scenarios: usize,
-    /// Figures, by metric in report order, then scenario (all together first), then planner.
+    /// Figures, by metric in report order, then scenario (all together first), then planner; of more than 1000 scenarios all together
+    /// alone.
     pub cells: Vec<Cell>,
     /// Rankings in report order; empty with fewer than two planners.
     pub rankings: Vec<Ranking>,
@@ -177,25 +181,28 @@ pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
     let thresholds = alike(runs)?;
     let scenarios: BTreeSet<&str> = runs.iter().map(|run| run.scenario).collect();
     let planners: BTreeSet<&PlannerName> = runs.iter().map(|run| &run.report.planner).collect();
+    let mut by_scenario: BTreeMap<&str, Vec<&PooledRun<'_>>> = BTreeMap::new();
+    // One scenario is all of them.
+    if (2..=BY_SCENARIO).contains(&scenarios.len()) {
+        runs.iter().for_each(|run| by_scenario.entry(run.scenario).or_default().push(run));
+    }
     let (mut cells, mut rankings) = (Vec::new(), Vec::new());
     for metric in crate::metrics::sheets() {
         let shared = Shared::of(metric, runs, &planners);
-        // All together first; one scenario is all of them.
-        let parts = std::iter::once(None).chain(scenarios.iter().copied().map(Some).filter(|_| scenarios.len() > 1));
-        for part in parts {
+        let together: Vec<&PooledRun<'_>> = runs.iter().filter(|run| shared.counts(run)).collect();
+        for (scenario, part) in
+            std::iter::once(("", &together)).chain(by_scenario.iter().map(|(name, part)| (*name, part)))
+        {
             for planner in &planners {
-                let own = |run: &&PooledRun<'_>| {
-                    run.report.planner == **planner
-                        && part.map_or_else(|| shared.counts(run), |one| run.scenario == one)
-                };
-                let count = runs.iter().filter(own).count();
+                let own = || part.iter().copied().filter(|run| run.report.planner == **planner);
+                let count = own().count();
                 if count == 0 {
                     continue;
                 }
-                let values = values(runs.iter().filter(own), metric.id);
+                let values = values(own(), metric.id);
                 let (estimate, interval) = figure(metric, &values);
                 cells.push(Cell {
-                    scenario: part.unwrap_or_default().to_owned(),
+                    scenario: scenario.to_owned(),
                     planner: (*planner).clone(),
                     metric,
                     runs: count,
@@ -361,6 +368,20 @@ mod tests {
         let runs: Vec<PooledRun<'_>> =
             reports.iter().map(|(scenario, report)| PooledRun { scenario, report }).collect();
         pool(&runs)
+    }
+
+    #[test]
+    fn of_very_many_scenarios_there_are_figures_of_all_together_alone() {
+        let report = report("near", 1, 0.8, 0.8);
+        let runs = |count: usize| -> Vec<(String, Report)> {
+            (0..count).map(|number| (format!("s{number}"), report.clone())).collect()
+        };
+        let few = pooled(&runs(3)).unwrap();
+        assert!(few.cells.iter().any(|cell| cell.scenario == "s1"));
+        let many = pooled(&runs(BY_SCENARIO + 1)).unwrap();
+        assert_eq!(many.scenarios, BY_SCENARIO + 1);
+        assert!(many.cells.iter().all(|cell| cell.scenario.is_empty()));
+        assert_eq!(many.overall("near", "success").unwrap().runs, BY_SCENARIO + 1);
     }
 
     #[test]

@@ -78,7 +78,29 @@
       word("th", name, line).scope = "row";
       for (const cell of cells) word("td", cell, line);
     }
-    at("figures-note").textContent = "Shares, means of counts, medians; in brackets the 95 % interval (Wilson, bootstrap). Order: the best first; tau: mean agreement of the order in each scenario (or seed) with it, 1 is the same." + (told.thresholds ? ` Thresholds ${told.thresholds}. ` : " ") + "planners.csv beside this page has every metric by scenario.";
+    at("figures-note").textContent = "Shares, means of counts, medians; in brackets the 95 % interval (Wilson, bootstrap). Order: the best first; tau: mean agreement of the order in each scenario (or seed) with it, 1 is the same." + (told.thresholds ? ` Thresholds ${told.thresholds}. ` : " ") + "planners.csv beside this page has every metric, of at most 1000 scenarios for each of them too.";
+  }
+
+  // What the whole library covers; what lacks stands first.
+  function covered() {
+    const told = data.covered;
+    if (!told || !data.rows.length) return;
+    at("covered").hidden = false;
+    at("covered-shares").textContent = told.shares.join(" · ");
+    for (const gap of told.gaps) word("li", gap, at("covered-gaps"));
+    const table = at("covered-encounters"), head = word("tr", "", word("thead", "", table)), body = word("tbody", "", table);
+    told.head.forEach((name, column) => { word("th", column ? name : "encounter angle", head).scope = "col"; });
+    for (const [name, ...cells] of told.encounters) {
+      const line = word("tr", "", body);
+      word("th", name, line).scope = "row";
+      for (const cell of cells) word("td", cell, line).className = cell === "·" ? "quiet" : "";
+    }
+    for (const [id, cells] of [["covered-scenarios", told.scenarios], ["covered-places", told.places]])
+      for (const [name, count] of cells) {
+        const cell = word("span", name, at(id));
+        cell.className = count === "·" ? "quiet" : "";
+        word("b", count, cell);
+      }
   }
 
   function thumbnail(row, link) {
@@ -232,5 +254,6 @@
   }
   parts();
   figures();
+  covered();
   filter();
 })();

@@ -88,12 +88,6 @@ pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Co
     reports_of(&Files::at(dir)?, manifest)
 }
 
-/// The same of the bundle at a path.
-pub(crate) fn reports_in(dir: &Path) -> Result<Vec<Report>, Complaint> {
-    let files = Files::at(dir)?;
-    reports_of(&files, &finished(&files)?)
-}
-
 fn reports_of(files: &Files, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
     manifest.runs.iter().map(|entry| report(files, entry)).collect()
 }

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use socrates_app::config::Config;
 use socrates_app::labels::{Blind, CompareOptions, PageOptions};
+use socrates_app::library_coverage::{self, CoverageOptions};
 use socrates_app::merge::{self, MergeOptions};
 use socrates_app::output::Printer;
 use socrates_app::query::{self, Condition, QueryOptions};
@@ -25,6 +27,8 @@ const LISTED: [&str; 7] = ["request", "planner", "seed", "verdict", "kind", "pat
 /// What is done with a library.
 #[derive(Debug, Subcommand)]
 enum LibraryVerb {
+    /// Make a library from requests: `run` by another name, with the same options, that makes a library of a single scenario too.
+    Build(Box<super::run::Run>),
     /// Put the shards of a batch together: the library that one run would have made.
     Merge {
         /// Folders of `run --shard`, or folders that hold such folders.
@@ -48,6 +52,15 @@ enum LibraryVerb {
         /// Folder of the library.
         library: PathBuf,
     },
+    /// Print what a library covers and lacks: canonical scenarios, encounter angles by density of people, places, locations, contexts,
+    /// planners and verdicts, with the number of scenarios and of realised ones in each cell.
+    Coverage {
+        /// Folder of the library.
+        library: PathBuf,
+        /// Write every cell as a table too (`.csv`).
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Write page and tables of a library anew; of more than 1000 scenarios several pages that lead to each other.
     Gallery {
         /// Folder of the library.
@@ -67,6 +80,9 @@ enum LibraryVerb {
         /// Print the folders of the scenarios alone, for other commands.
         #[arg(long, conflicts_with = "columns")]
         paths: bool,
+        /// Write the table to this file instead of printing it: `.csv`, or `.parquet` in a program built with the feature `parquet`.
+        #[arg(long, value_name = "FILE", conflicts_with = "paths")]
+        out: Option<PathBuf>,
     },
     /// Write what authors were asked and answered as training data.
     Export {
@@ -80,20 +96,25 @@ enum LibraryVerb {
 }
 
 impl Library {
-    pub(super) fn act(&self, talk: &Printer) -> Outcome {
+    pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
         match &self.verb {
+            LibraryVerb::Build(run) => run.build(talk, config).await,
             LibraryVerb::Merge { shards, out, moves } => {
                 merge::merge(talk, &MergeOptions { shards: shards.clone(), out: out.clone(), moves: *moves })
             }
             LibraryVerb::Verify { what } => verify::verify(talk, what),
             LibraryVerb::List { library } => {
                 let (library, columns) = (library.clone(), LISTED.map(str::to_owned).into());
-                query::query(talk, &QueryOptions { library, conditions: Vec::new(), columns, paths: false })
+                query::query(talk, &QueryOptions { library, conditions: Vec::new(), columns, paths: false, out: None })
+            }
+            LibraryVerb::Coverage { library, out } => {
+                let (library, out) = (library.clone(), out.clone());
+                library_coverage::coverage(talk, &CoverageOptions { library, out })
             }
             LibraryVerb::Gallery { library } => done(report::report(talk, library)),
-            LibraryVerb::Query { library, conditions, columns, paths } => {
-                let (library, conditions) = (library.clone(), conditions.clone());
-                query::query(talk, &QueryOptions { library, conditions, columns: columns.clone(), paths: *paths })
+            LibraryVerb::Query { library, conditions, columns, paths, out } => {
+                let (library, conditions, columns) = (library.clone(), conditions.clone(), columns.clone());
+                query::query(talk, &QueryOptions { library, conditions, columns, paths: *paths, out: out.clone() })
             }
             LibraryVerb::Export { what, chat_jsonl } => done(export_chat::export(talk, what, chat_jsonl)),
         }

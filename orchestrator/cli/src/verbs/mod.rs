@@ -154,7 +154,7 @@ pub(crate) enum Verb {
     Evaluate(evaluate::Evaluate),
     /// Try retry policies on injected faults, in virtual time or on real processes: what is lost, doubled, repeated, and what it costs.
     Experiment(experiment::Experiment),
-    /// Take out of a library what others can use.
+    /// Make, put together, look through and check libraries of many scenarios.
     Library(library::Library),
     /// List, show and rate the canonical scenarios of the catalog.
     Scenarios(scenarios::Scenarios),
@@ -213,7 +213,7 @@ impl Verb {
             Self::Map(verb) => verb.act(talk),
             Self::Evaluate(verb) => verb.act(talk, config).await,
             Self::Experiment(verb) => verb.act(talk, config).await,
-            Self::Library(verb) => verb.act(talk),
+            Self::Library(verb) => verb.act(talk, config).await,
             Self::Scenarios(verb) => verb.act(talk).await,
             Self::Cluster(verb) => verb.act(talk, config).await,
             Self::Dev(verb) => verb.act(talk, config).await,

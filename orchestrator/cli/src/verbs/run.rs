@@ -37,6 +37,9 @@ pub(crate) struct Run {
     /// were not realised) or `index` (none: list, page and tables alone); folders up to 1000 scenarios, else packed, if it is left out.
     #[arg(long, value_name = "WHICH")]
     keep: Option<Keep>,
+    /// Make nothing: say how many different scenarios and jobs there would be, and about how much CPU, disk, calls and tokens they take.
+    #[arg(long)]
+    dry_run: bool,
     /// Options.
     #[command(flatten)]
     options: Options,
@@ -44,8 +47,16 @@ pub(crate) struct Run {
 
 impl Run {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let options = RunOptions { shard: self.shard, keep: self.keep, ..self.options.values() };
-        run::run(talk, config, &self.requests, &options).await
+        run::run(talk, config, &self.requests, &self.values()).await
+    }
+
+    /// The same into a library, also where there is one scenario.
+    pub(super) async fn build(&self, talk: &Printer, config: &Config) -> Outcome {
+        run::build(talk, config, &self.requests, &self.values()).await
+    }
+
+    fn values(&self) -> RunOptions {
+        RunOptions { shard: self.shard, keep: self.keep, dry_run: self.dry_run, ..self.options.values() }
     }
 }
 
@@ -120,6 +131,7 @@ impl Options {
             repeats: own.repeats,
             shard: None,
             keep: None,
+            dry_run: false,
             author: own.author,
             pace,
             require,
