@@ -152,8 +152,7 @@ fn logged_words(line: &logs::Line) -> String {
         let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         (!text.is_empty()).then_some(text)
     };
-    let time = line.at.split_once('T').map_or(line.at.as_str(), |(_, time)| time).trim_end_matches('Z');
-    let mut words = format!("log        {time}  {:<14} {}", line.process, word("msg").unwrap_or_default());
+    let mut words = format!("log        {}  {:<14} {}", line.clock, line.process, word("msg").unwrap_or_default());
     let fields = [
         ("attempt", "attempt "),
         ("outcome", ""),

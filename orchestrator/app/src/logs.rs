@@ -153,6 +153,8 @@ pub fn stamp(ms: u64) -> String {
 pub(crate) struct Line {
     /// When, as [`stamp`] writes it: sorted by it, lines are in the order of time of the machines' clocks.
     pub(crate) at: String,
+    /// The time of day in it, for people.
+    pub(crate) clock: String,
     /// Which process, such as `orchestrator`.
     pub(crate) process: String,
     /// All of it.
@@ -173,8 +175,9 @@ pub(crate) fn of_trace(dir: &Path, trace_id: &str) -> Vec<Line> {
         lines.extend(own.filter_map(|line| {
             let object: Value = serde_json::from_str(line).ok()?;
             let word = |name: &str| object.get(name).and_then(Value::as_str).map(str::to_owned);
-            let (at, process) = (word("ts")?, word("process").unwrap_or_default());
-            (word("trace_id").as_deref() == Some(trace_id)).then_some(Line { at, process, object })
+            let (stamped, process) = (word("ts")?, word("process").unwrap_or_default());
+            let clock = stamped.rsplit('T').next().unwrap_or_default().trim_end_matches('Z').to_owned();
+            (word("trace_id").as_deref() == Some(trace_id)).then_some(Line { at: stamped, clock, process, object })
         }));
     }
     lines.sort_by(|a, b| a.at.cmp(&b.at));

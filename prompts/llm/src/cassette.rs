@@ -51,9 +51,9 @@ struct Exchange {
     key: String,
     request: Value,
     answer: ChatAnswer,
-    /// Words of whoever recorded it, such as the version of the question; empty in recordings of before.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    note: String,
+    /// By what its recorder knows it, such as the version of the question; none in recordings of before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    note: Option<String>,
 }
 
 /// The recording that is most like a request without one.
@@ -63,8 +63,8 @@ pub struct Nearest {
     pub key: String,
     /// Members in which the requests differ; turns by their number.
     pub differs: Vec<String>,
-    /// The note that was kept with it; empty in recordings of before.
-    pub note: String,
+    /// The note that was kept with it; none in recordings of before.
+    pub note: Option<String>,
 }
 
 impl Cassette {
@@ -106,7 +106,7 @@ impl Cassette {
     ///
     /// # Errors
     /// [`CassetteError::File`] when it cannot be written.
-    pub fn keep(&self, request: &ChatRequest, answer: &ChatAnswer, note: &str) -> Result<(), CassetteError> {
+    pub fn keep(&self, request: &ChatRequest, answer: &ChatAnswer, note: Option<&str>) -> Result<(), CassetteError> {
         let key = Self::key(request);
         let path = self.place(&key);
         let at = |source| CassetteError::File { path: path.clone(), source };
@@ -115,7 +115,7 @@ impl Cassette {
             key: key.clone(),
             request: canonical(request),
             answer: answer.clone(),
-            note: note.to_owned(),
+            note: note.map(str::to_owned),
         };
         let text = serde_json::to_string_pretty(&exchange)
             .map_err(|error| CassetteError::Broken { path: path.clone(), why: error.to_string() })?;
@@ -255,7 +255,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cassette = Cassette::at(folder.path().join("tape"));
         assert!(cassette.is_empty() && cassette.find(&request("a")).unwrap().is_none());
-        cassette.keep(&request("a"), &answer(), "of a test").unwrap();
+        cassette.keep(&request("a"), &answer(), Some("of a test")).unwrap();
         assert_eq!(cassette.find(&request("a")).unwrap(), Some(answer()));
         assert_eq!(cassette.find(&request("b")).unwrap(), None);
         assert_eq!(cassette.len(), 1);
@@ -266,10 +266,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cassette = Cassette::at(folder.path());
         assert_eq!(cassette.nearest(&request("a")), None);
-        cassette.keep(&request("a"), &answer(), "of a test").unwrap();
+        cassette.keep(&request("a"), &answer(), Some("of a test")).unwrap();
         let other = ChatRequest { seed: Some(9), ..request("b") };
         let Nearest { key, differs, note } = cassette.nearest(&other).unwrap();
-        assert_eq!(note, "of a test");
+        assert_eq!(note.as_deref(), Some("of a test"));
         assert_eq!((key, differs), (Cassette::key(&request("a")), vec!["seed".to_owned(), "turns[0]".to_owned()]));
     }
 
@@ -279,7 +279,7 @@ mod tests {
         let cassette = Cassette::at(folder.path());
         let secret = "sk-ant-REDACTED";
         let told = ChatAnswer { text: format!("{{\"a\": \"{secret}\"}}"), ..answer() };
-        cassette.keep(&request(&format!("my key is {secret}")), &told, "").unwrap();
+        cassette.keep(&request(&format!("my key is {secret}")), &told, None).unwrap();
         let text = fs::read_to_string(&cassette.files()[0]).unwrap();
         assert!(!text.contains("abc123DEF"), "{text}");
         // The key of the exchange is that of the request as it was asked.
@@ -290,7 +290,7 @@ mod tests {
     fn a_broken_file_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let cassette = Cassette::at(folder.path());
-        cassette.keep(&request("a"), &answer(), "of a test").unwrap();
+        cassette.keep(&request("a"), &answer(), Some("of a test")).unwrap();
         fs::write(cassette.place(&Cassette::key(&request("a"))), "{").unwrap();
         assert!(matches!(cassette.find(&request("a")), Err(CassetteError::Broken { .. })));
     }

@@ -67,7 +67,7 @@ impl Author for Replay {
         };
         let answer = other.ask(question).await?;
         if other.name() != socrates_offline::NAME {
-            keep(&self.cassette, &request, &answer, &prompt.template.id)?;
+            keep(&self.cassette, &request, &answer, Some(&prompt.template.id))?;
         }
         Ok(answer)
     }
@@ -100,7 +100,7 @@ impl<A: Author> Author for Recorder<A> {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let answer = self.inner.ask(question).await?;
         let (request, prompt) = recorded_as(question, self.style)?;
-        keep(&self.cassette, &request, &answer, &prompt.template.id)?;
+        keep(&self.cassette, &request, &answer, Some(&prompt.template.id))?;
         Ok(answer)
     }
 
@@ -117,17 +117,17 @@ fn told(near: &Nearest, template: &str) -> String {
     if !near.differs.iter().any(|name| name == "turns[1]") {
         return differs;
     }
-    let version = match near.note.as_str() {
-        "" => "an earlier version".to_owned(),
-        note if note == template => return format!("{differs} (the rules of another style)"),
-        note => format!("the version that asks with `{note}`"),
+    let version = match near.note.as_deref() {
+        None => "an earlier version".to_owned(),
+        Some(note) if note == template => return format!("{differs} (the rules of another style)"),
+        Some(note) => format!("the version that asks with `{note}`"),
     };
     format!(
         "{differs}; it was recorded by {version}, this program asks with `{template}`: replay it with that version, or record anew"
     )
 }
 
-fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer, template: &str) -> Result<(), AskError> {
+fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer, template: Option<&str>) -> Result<(), AskError> {
     let kept = ChatAnswer {
         text: answer.text.clone(),
         finish: if answer.cut { Finish::Cut } else { Finish::Stop },
@@ -175,7 +175,7 @@ mod tests {
         request.turns[1].text.push_str("\nAn older rule.");
         let answer = Answer { text: "{}".to_owned(), ..Answer::default() };
         for (note, words) in
-            [("proposal/1", "by the version that asks with `proposal/1`"), ("", "by an earlier version")]
+            [(Some("proposal/1"), "by the version that asks with `proposal/1`"), (None, "by an earlier version")]
         {
             keep(&Cassette::at(folder), &request, &answer, note).unwrap();
             let missing = Replay::new(folder, Style::default()).ask(&asked).await.unwrap_err().message;

@@ -456,7 +456,7 @@ fn cassettes(kit: &Kit) -> Vec<Sample> {
     // Kept and read back, so that the sample has the form that this version writes.
     let folder = kit.work.join("cassette");
     let key = Cassette::key(&asked());
-    if Cassette::at(&folder).keep(&asked(), &answer, "").is_err() {
+    if Cassette::at(&folder).keep(&asked(), &answer, None).is_err() {
         return Vec::new();
     }
     let file = format!("{}/{key}.json", key.get(..2).unwrap_or_default());
