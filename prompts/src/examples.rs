@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 use socrates_bt::TreeSpec;
 use socrates_model::job::Stage;
 use socrates_model::reading::Fact;
-use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, Reading, Request, SceneGraph};
+use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, ReadBy, Reading, Request, SceneGraph};
 
 use crate::question::Question;
 use crate::style::{BehaviorsForm, Style};
-use crate::{terse, ways};
+use crate::{account, terse, ways};
 
 /// The map of the examples.
 pub(crate) const MAP: &str = include_str!("../examples/map.json");
@@ -25,25 +25,29 @@ pub(crate) const ALL: [&str; 2] =
 struct Example {
     request: Request,
     facts: Vec<Fact>,
+    /// The account of its sentences, as an author that reads it itself gives it.
+    reading: Value,
     proposal: Proposal,
     paths: Paths,
 }
 
-/// Every worked example of a stage: its question, and the answer as it is shown in this style.
+/// Every worked example of a stage: its question, and the answer as it is shown in this style to an author that reads the request itself,
+/// or is told what the grammar read.
 ///
 /// Empty where the data cannot be read, which a test keeps from happening.
 #[must_use]
-pub fn worked(stage: Stage, style: &Style) -> Vec<(Question, Value)> {
+pub fn worked(stage: Stage, style: &Style, by: ReadBy) -> Vec<(Question, Value)> {
     ALL.iter()
         .filter_map(|text| serde_json::from_str::<Example>(text).ok())
         .map(|example| {
-            let answer = answer(&example, stage, style);
+            let answer = answer(&example, stage, style, by);
+            let facts = if by.is_author() { Vec::new() } else { example.facts };
             let question = Question {
                 stage,
                 proposal: (stage != Stage::Proposal).then_some(example.proposal),
                 ..Question::first(
                     example.request,
-                    Reading { facts: example.facts, ..Reading::default() },
+                    Reading { by, facts, ..Reading::default() },
                     location(),
                     1,
                 )
@@ -53,12 +57,15 @@ pub fn worked(stage: Stage, style: &Style) -> Vec<(Question, Value)> {
         .collect()
 }
 
-fn answer(example: &Example, stage: Stage, style: &Style) -> Value {
+fn answer(example: &Example, stage: Stage, style: &Style, by: ReadBy) -> Value {
     match stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
             let mut short = terse::shorten(&serde_json::to_value(&example.proposal).unwrap_or_default());
             if let Some(members) = short.as_object_mut() {
                 members.insert("analysis".to_owned(), json!("…"));
+                if by.is_author() {
+                    members.insert(account::MEMBER.to_owned(), example.reading.clone());
+                }
             }
             short
         }

@@ -12,6 +12,7 @@ use socrates_model::job::Stage;
 const PROPOSAL: &[&str] = &[
     "analysis",
     "variants",
+    "reading",
     "title",
     "description",
     "pattern",
@@ -41,6 +42,10 @@ const PROPOSAL: &[&str] = &[
     "outcome",
     "source",
     "test",
+    // Of the account of a sentence.
+    "fact",
+    "quote",
+    "of",
 ];
 
 const PATHS: &[&str] = &[

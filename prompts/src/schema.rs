@@ -10,7 +10,8 @@ use socrates_model::{HumanId, PlaceClass, Rule};
 
 use crate::question::Question;
 use crate::style::{BehaviorsForm, PathsForm, Style};
-use crate::{order, place_text};
+use crate::sentences::sentences;
+use crate::{account, order, place_text};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.
 const MOST_IDS: usize = 250;
@@ -101,7 +102,7 @@ fn proposal(question: &Question) -> Value {
         ("script", list(&text())),
         ("start", or_null(&place)),
     ]);
-    let mut schema = object(&[
+    let members = [
         (THINKING, thinking()),
         ("description", text()),
         ("expected_events", events),
@@ -113,12 +114,32 @@ fn proposal(question: &Question) -> Value {
         ("place", place.clone()),
         ("robot", robot),
         ("title", text()),
-    ]);
+    ];
+    let reads = question.reading.by.is_author();
+    let account = reads.then(|| (account::MEMBER, account_of(question)));
+    let mut schema = object(&members.into_iter().chain(account).collect::<Vec<_>>());
     let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
     let place = json!({"type": "string", "enum": places});
     define(&mut schema, &[("human", object(&human)), ("place", place)]);
+    if reads {
+        define(&mut schema, &[("share", share())]);
+    }
     strict(&mut schema, order::of(question.stage));
     schema
+}
+
+/// The account of a request: a member for each sentence, so that none can be left out.
+fn account_of(question: &Question) -> Value {
+    let each: Vec<(String, Value)> =
+        sentences(&question.request).into_iter().map(|one| (one.id, json!({"$ref": "#/$defs/share"}))).collect();
+    object(&each.iter().map(|(id, share)| (id.as_str(), share.clone())).collect::<Vec<_>>())
+}
+
+/// What becomes of a sentence; see [`crate::account`].
+fn share() -> Value {
+    let claim = object(&[("fact", text()), ("of", text()), ("quote", text())]);
+    let reason = json!({"type": "string", "enum": account::reasons()});
+    json!({"anyOf": [list(&claim), reason, object(&[(account::CANNOT, text())])]})
 }
 
 /// The schema of several answers of this form in one.
@@ -128,10 +149,12 @@ fn several(mut one: Value, count: u32) -> Value {
         "required": ["variants"], "additionalProperties": false, "$defs": defs})
 }
 
+/// Adds definitions to those of a schema.
 fn define(schema: &mut Value, defs: &[(&str, Value)]) {
-    let defs: Map<String, Value> = defs.iter().map(|(name, schema)| ((*name).to_owned(), schema.clone())).collect();
-    if let Some(members) = schema.as_object_mut() {
-        members.insert("$defs".to_owned(), Value::Object(defs));
+    let Some(members) = schema.as_object_mut() else { return };
+    let known = members.entry("$defs").or_insert_with(|| json!({}));
+    if let Some(known) = known.as_object_mut() {
+        known.extend(defs.iter().map(|(name, schema)| ((*name).to_owned(), schema.clone())));
     }
 }
 

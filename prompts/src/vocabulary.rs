@@ -133,6 +133,7 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         FactKind::RobotGoal(class) => format!("the robot ends at {}", class.name()),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),
         FactKind::Pattern(card) => format!("pattern {card}"),
+        FactKind::Asked { of } => of.map_or_else(|| "asked for".to_owned(), |agent| format!("{agent}: asked for")),
     }
 }
 

@@ -161,6 +161,12 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
         // An empty task is P-ROBOT; whether prose means the same as prose is not judged here. Where the robot's way leads by name
         // is written from the facts, or given up with a note.
         FactKind::RobotTask(_) | FactKind::RobotAt { .. } => None,
+        FactKind::Asked { of } => match of {
+            Some(AgentId::Human(human)) if proposal.human(*human).is_none() => {
+                rough((*human).into(), "is missing".to_owned())
+            }
+            Some(_) | None => None,
+        },
     }
 }
 

@@ -61,6 +61,17 @@ pub enum Background {
 }
 
 impl Background {
+    /// Every reason.
+    pub const ALL: [Self; 7] = [
+        Self::Setting,
+        Self::Errand,
+        Self::Comment,
+        Self::Cause,
+        Self::Looks,
+        Self::Instruction,
+        Self::Report,
+    ];
+
     /// The reason in a word or two, as `socrates read` shows it.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -93,6 +104,13 @@ pub enum Became {
     NotPlayed {
         /// Why, and what is played instead.
         why: Message,
+    },
+    /// The author calls it background, and the grammar finds in it what somebody does: a person has to say which is right.
+    Disputed {
+        /// The author's reason.
+        reason: Background,
+        /// What the grammar read of it: `human_1: relation = "frontal"`.
+        found: Vec<String>,
     },
     /// It was not understood.
     NotRead {
@@ -129,7 +147,7 @@ impl Statement {
     /// Whether it is a wish that is not in the run.
     #[must_use]
     pub const fn is_unplayed(&self) -> bool {
-        matches!(self.became, Became::NotPlayed { .. } | Became::NotRead { .. })
+        matches!(self.became, Became::NotPlayed { .. } | Became::Disputed { .. } | Became::NotRead { .. })
     }
 
     /// Whether it was not understood.
@@ -138,7 +156,7 @@ impl Statement {
         matches!(self.became, Became::NotRead { .. })
     }
 
-    /// What it is called that became of it: `read`, `background`, `not played`, `not read`, `waived`.
+    /// What it is called that became of it: `read`, `background`, `not played`, `disputed`, `not read`, `waived`.
     #[must_use]
     pub const fn fate(&self) -> &'static str {
         match self.became {
@@ -146,6 +164,7 @@ impl Statement {
             Became::Read { .. } => "read",
             Became::Background(_) => "background",
             Became::NotPlayed { .. } => "not played",
+            Became::Disputed { .. } => "disputed",
             Became::NotRead { .. } => "not read",
         }
     }
@@ -158,6 +177,9 @@ impl Statement {
             Became::Read { lines, .. } => lines.join("; "),
             Became::Background(reason) => reason.name().to_owned(),
             Became::NotPlayed { why } => why.to_string(),
+            Became::Disputed { reason, found } => {
+                format!("{} to the author; the grammar reads: {}", reason.name(), found.join("; "))
+            }
             Became::NotRead { rewording: Some(other) } => format!("would be read: `{other}`"),
             Became::NotRead { rewording: None } => "say it in other words, or as a form".to_owned(),
         }

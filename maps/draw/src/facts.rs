@@ -31,6 +31,8 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::RobotStart(place) => format!("the robot starts at: {}", place_words(*place)),
         FactKind::RobotGoal(place) => format!("the robot goes to: {}", place_words(*place)),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),
+        FactKind::Asked { of: Some(agent) } => format!("{agent}: as the author read it"),
+        FactKind::Asked { of: None } => "as the author read it".to_owned(),
         FactKind::Pattern(card) => format!("pattern: {}", card.replace('_', " ")),
     }
 }

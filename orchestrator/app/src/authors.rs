@@ -11,6 +11,7 @@ use socrates_author::{Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
 use socrates_model::AuthorSpec;
+use socrates_model::job::{BEHAVIORS_BY, BY_PROPOSAL};
 use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
@@ -115,6 +116,26 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
     Style::from_settings(&asked).map(|style| style.settings()).map_err(broken)
 }
 
+/// What behaviors are made from, as a setting of jobs: a model that writes rules in its proposal is not asked for them again.
+pub(crate) fn behaviors_by(author: &AuthorSpec, style: &BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let compiled = author.is_model()
+        && Style::from_settings(style).is_ok_and(|style| socrates_author::compiled::compiles(&style));
+    if compiled { BTreeMap::from([(BEHAVIORS_BY.to_owned(), BY_PROPOSAL.to_owned())]) } else { BTreeMap::new() }
+}
+
+/// Whether the author reads the texts of requests itself; rules have the grammar.
+pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Complaint> {
+    let word = config.text("author.reading");
+    match word.as_str() {
+        "model" => Ok(author.is_model()),
+        "grammar" => Ok(false),
+        _ => {
+            let what = format!("`author.reading`: `{word}` is unknown; allowed: model, grammar");
+            Err(Complaint::input(what, "`socrates config author` prints the manual"))
+        }
+    }
+}
+
 /// The writer of paths, as a setting of jobs; empty where the author writes them.
 pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Complaint> {
     let word = config.text("author.paths_by");
@@ -122,9 +143,10 @@ pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<
         "model" => Ok(BTreeMap::new()),
         // Rules have the solver anyway, and their results stay the same results.
         "solver" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
-        "solver" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
+        "model_alone" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
+        "solver" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
         _ => {
-            let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, solver");
+            let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, model_alone, solver");
             Err(Complaint::input(what, "`socrates config author` prints the manual"))
         }
     }

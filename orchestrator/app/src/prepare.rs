@@ -149,8 +149,6 @@ pub(crate) fn prepare_text(
     if let Some(description) = &request.location_description {
         location.description.clone_from(description);
     }
-    let reading = socrates_offline::read(&request, &location);
-    check_reading(&reading, &request, &location, shown)?;
     let mut pins = BTreeMap::new();
     if let Some(file) = &request.proposal {
         pins.insert(Role::Proposal, read_pin(Role::Proposal, &folder.join(file), |all| all.proposal)?);
@@ -161,8 +159,11 @@ pub(crate) fn prepare_text(
     if let Some(file) = &request.behaviors {
         pins.insert(Role::Behaviors, read_pin(Role::Behaviors, &folder.join(file), |all| all.behaviors)?);
     }
-    check_people(&request, &reading, &pins, shown)?;
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
+    let pinned = request.proposal.as_ref().map(|file| folder.join(file));
+    let reading = read(&request, &location, crate::authors::reads(config, &author)?, pinned.as_deref());
+    check_reading(&reading, &request, &location, shown)?;
+    check_people(&request, &reading, &pins, shown)?;
     // What a language model would read out of the task is not known beforehand.
     if author == AuthorSpec::Offline && !pins.contains_key(&Role::Proposal) && !pins.contains_key(&Role::Paths) {
         check_ways(&reading, &request, &location, shown)?;
@@ -188,7 +189,9 @@ pub(crate) fn prepare_text(
         // that were put in matters.
         style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
     }
+    let behaviors = crate::authors::behaviors_by(&author, &style);
     style.extend(crate::authors::paths_by(config, &author)?);
+    style.extend(behaviors);
     Ok(Prepared {
         name: slug(name),
         file: None,
@@ -206,6 +209,19 @@ pub(crate) fn prepare_text(
         author,
         author_note,
     })
+}
+
+/// How the request is read: by the grammar, or as far as it is stated where its author reads the texts. A pinned proposal whose author read
+/// them brings its reading along.
+fn read(request: &Request, location: &Location, by_author: bool, pinned: Option<&Path>) -> Reading {
+    let Some(pinned) = pinned else {
+        let read = if by_author { socrates_offline::stated } else { socrates_offline::read };
+        return read(request, location);
+    };
+    let beside = pinned.with_file_name(layout::READING.file_name());
+    let kept = std::fs::read(beside).ok().and_then(|bytes| serde_json::from_slice::<Reading>(&bytes).ok());
+    let kept = kept.filter(|reading| reading.by.is_author() && by_author);
+    kept.unwrap_or_else(|| socrates_offline::read(request, location))
 }
 
 /// Refuses a request whose reading says that it cannot be made, with what would settle it.

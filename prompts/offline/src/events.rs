@@ -258,6 +258,7 @@ fn of_fact(
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::Asked { .. }
         | FactKind::Pattern(_) => {}
     }
 }

@@ -19,8 +19,8 @@ use crate::fault_model::FaultRates;
 use crate::faulty::FaultyAuthor;
 use crate::llm::{Llm, MAX_TOKENS, ask_error};
 use crate::offline::Offline;
-use crate::paths_by;
 use crate::variants::BySeed;
+use crate::{compiled, paths_by};
 
 /// What a process knows of one kind of server.
 #[derive(Debug, Clone, Default)]
@@ -118,9 +118,15 @@ pub fn author_of_job(
     } else {
         Box::new(Told { inner: author, telling: style.feedback })
     };
+    // Rules act on what their behaviors are told.
+    let compiles = compiled::by_proposal(settings)? && author.name() != socrates_offline::NAME;
+    let author: Box<dyn Author> = if compiles { Box::new(compiled::Compiled { inner: author }) } else { author };
     // Rules have the solver anyway.
-    let solver = paths_by::by_solver(settings)? && author.name() != socrates_offline::NAME;
-    let author: Box<dyn Author> = if solver { Box::new(paths_by::BySolver { inner: author }) } else { author };
+    let from = paths_by::solver_from(settings, &style)?.filter(|_| author.name() != socrates_offline::NAME);
+    let author: Box<dyn Author> = match from {
+        Some(from) => Box::new(paths_by::BySolver { inner: author, asked: attempt, from }),
+        None => author,
+    };
     // A model writes several in one answer; rules are asked with as many seeds.
     let author: Box<dyn Author> = if style.variants > 1 && author.name() == socrates_offline::NAME {
         Box::new(BySeed { inner: author, count: style.variants })

@@ -74,6 +74,16 @@ impl AuthorSpec {
                                        ollama:<model>, llamacpp:<model>, lmstudio:<model>, cassette:<folder>, \
                                        record:<folder>=<author>, replay:<folder>=<author>";
 
+    /// Whether answers come from a language model, live or recorded. Not of [`AuthorSpec::Auto`], which is nobody yet.
+    #[must_use]
+    pub fn is_model(&self) -> bool {
+        match self {
+            Self::Auto | Self::Offline => false,
+            Self::Server(..) | Self::Cassette(_) => true,
+            Self::Record(_, inner) | Self::Replay(_, inner) => inner.is_model(),
+        }
+    }
+
     /// The server that is asked, with its model; nothing for rules and recordings.
     #[must_use]
     pub fn server(&self) -> Option<(ServerKind, &str)> {

@@ -1,6 +1,7 @@
 //! Every worked example that a prompt shows would itself be accepted: read and checked like an answer of a model.
 
 use socrates_author::{Says, Written, attempt};
+use socrates_model::ReadBy;
 use socrates_model::job::Stage;
 use socrates_prompts::{BehaviorsForm, PathsForm, Style, examples};
 
@@ -12,8 +13,8 @@ fn styles() -> Vec<Style> {
 #[tokio::test]
 async fn every_example_of_every_stage_and_form_passes_the_checks_without_a_warning() {
     for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
-        for style in styles() {
-            let shown = examples::worked(stage, &style);
+        for (style, by) in styles().into_iter().flat_map(|style| [(style, ReadBy::Grammar), (style, ReadBy::Author)]) {
+            let shown = examples::worked(stage, &style, by);
             assert_eq!(shown.len(), 2);
             for (question, answer) in shown {
                 // The form that servers are told to enforce takes it as well.
@@ -30,12 +31,12 @@ async fn an_example_means_the_same_in_every_form() {
     let mut paths = Vec::new();
     let mut actions = Vec::new();
     for style in styles() {
-        let (question, answer) = examples::worked(Stage::Paths, &style).remove(0);
+        let (question, answer) = examples::worked(Stage::Paths, &style, ReadBy::Grammar).remove(0);
         let Written::Paths(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
             panic!()
         };
         paths.push((read.robot, read.humans, read.encounters));
-        let (question, answer) = examples::worked(Stage::Behaviors, &style).remove(0);
+        let (question, answer) = examples::worked(Stage::Behaviors, &style, ReadBy::Grammar).remove(0);
         let Written::Behaviors(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
             panic!()
         };

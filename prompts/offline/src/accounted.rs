@@ -1,0 +1,56 @@
+//! The offline author's account of a request, for questions in which the author reads the texts itself.
+
+use serde_json::{Map, Value, json};
+use socrates_model::statement::{Became, Statement};
+use socrates_model::{Proposal, Reading};
+use socrates_prompts::{Question, Sentence, sentences};
+
+/// The member `reading` of an answer: what the grammar read, sentence by sentence.
+pub(crate) fn account(question: &Question, reading: &Reading, proposal: &Proposal) -> Value {
+    let mut told = Vec::new();
+    let shares = sentences(&question.request).into_iter().map(|sentence| {
+        let share = share(&sentence, reading, proposal, &mut told);
+        (sentence.id, share)
+    });
+    Value::Object(shares.collect::<Map<String, Value>>())
+}
+
+fn share(sentence: &Sentence, reading: &Reading, proposal: &Proposal, told: &mut Vec<String>) -> Value {
+    let overlaps = |other: &&Statement| {
+        other.at == sentence.at && other.span.from < sentence.span.to && sentence.span.from < other.span.to
+    };
+    let own: Vec<&Statement> = reading.statements.iter().filter(overlaps).collect();
+    let ids = own.iter().flat_map(|one| if let Became::Read { facts, .. } = &one.became { &facts[..] } else { &[] });
+    let mut claims = Vec::new();
+    for id in ids {
+        if told.contains(id) {
+            continue;
+        }
+        let Some(fact) = reading.facts.iter().find(|fact| fact.id == *id) else { continue };
+        told.push(id.clone());
+        let carrier = proposal.expected_events.iter().find(|clause| clause.source == *id);
+        let of = carrier.map_or_else(
+            || "robot".to_owned(),
+            |clause| clause.predicate.human().map_or_else(|| "all".to_owned(), |human| human.to_string()),
+        );
+        let quote = if sentence.shown.contains(&fact.quote) { &fact.quote } else { &sentence.shown };
+        claims.push(json!({"fact": id, "quote": quote, "of": of}));
+    }
+    if !claims.is_empty() {
+        return Value::Array(claims);
+    }
+    let unplayed = own.iter().find(|one| one.is_unplayed()).map(|one| one.told());
+    if let Some(why) = unplayed {
+        return json!({"cannot_be_played": why});
+    }
+    let reason = own.iter().find_map(|one| {
+        if let Became::Background(reason) = one.became { Some(reason.name()) } else { None }
+    });
+    match reason {
+        Some(reason) => json!(reason),
+        None => {
+            let id = format!("r{}", sentence.id.trim_start_matches('s'));
+            json!([{"fact": id, "quote": sentence.shown, "of": "robot"}])
+        }
+    }
+}
