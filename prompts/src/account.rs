@@ -73,9 +73,9 @@ fn wrong(path: &str, message: impl Into<String>) -> Fault {
 
 fn share(id: &str, value: &Value) -> Result<Share, Fault> {
     match value {
-        Value::String(word) => background(word)
-            .map(Share::Background)
-            .ok_or_else(|| wrong(&format!(".{id}"), format!("`{word}` is no reason; allowed: {}", reasons().join(", ")))),
+        Value::String(word) => background(word).map(Share::Background).ok_or_else(|| {
+            wrong(&format!(".{id}"), format!("`{word}` is no reason; allowed: {}", reasons().join(", ")))
+        }),
         Value::Object(members) => match members.get(CANNOT).and_then(Value::as_str) {
             Some(why) if !why.trim().is_empty() && members.len() == 1 => {
                 Ok(Share::CannotBePlayed(why.trim().chars().take(MOST_REASON).collect()))
@@ -103,7 +103,7 @@ fn claim(path: &str, item: &Value) -> Result<Claim, Fault> {
     let of = if of == ALL {
         None
     } else {
-        let who = of.parse().map_err(|_| {
+        let who = of.parse().map_err(|_no_agent| {
             wrong(path, format!("`of` is `{of}`; allowed: robot, {ALL}, or a human such as human_1"))
         });
         Some(who?)

@@ -45,12 +45,7 @@ pub fn worked(stage: Stage, style: &Style, by: ReadBy) -> Vec<(Question, Value)>
             let question = Question {
                 stage,
                 proposal: (stage != Stage::Proposal).then_some(example.proposal),
-                ..Question::first(
-                    example.request,
-                    Reading { by, facts, ..Reading::default() },
-                    location(),
-                    1,
-                )
+                ..Question::first(example.request, Reading { by, facts, ..Reading::default() }, location(), 1)
             };
             (question, answer)
         })

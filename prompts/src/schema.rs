@@ -9,8 +9,8 @@ use socrates_model::reading::FactKind;
 use socrates_model::{HumanId, PlaceClass, Rule};
 
 use crate::question::Question;
-use crate::style::{BehaviorsForm, PathsForm, Style};
 use crate::sentences::sentences;
+use crate::style::{BehaviorsForm, PathsForm, Style};
 use crate::{account, order, place_text};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.

@@ -44,9 +44,8 @@ pub fn sentences(request: &Request) -> Vec<Sentence> {
         let text = text_of(request, at);
         for (from, to) in bounds(text) {
             let Some(quote) = text.get(from..to) else { continue };
-            let chars = |end: usize| {
-                u32::try_from(text.get(..end).unwrap_or_default().chars().count()).unwrap_or(u32::MAX)
-            };
+            let chars =
+                |end: usize| u32::try_from(text.get(..end).unwrap_or_default().chars().count()).unwrap_or(u32::MAX);
             found.push(Sentence {
                 id: format!("s{}", found.len() + 1),
                 at,
@@ -89,7 +88,8 @@ mod tests {
     use super::*;
 
     fn of(rough: &str) -> Vec<Sentence> {
-        let request = serde_json::json!({"location": "x", "social_context": "A hall.", "task": "Go", "rough_scenario": rough});
+        let request =
+            serde_json::json!({"location": "x", "social_context": "A hall.", "task": "Go", "rough_scenario": rough});
         sentences(&serde_json::from_value(request).unwrap())
     }
 
@@ -104,7 +104,10 @@ mod tests {
             shown("Eine Ärztin kommt dem Roboter entgegen. Sie bleibt stehen."),
             ["Eine Ärztin kommt dem Roboter entgegen.", "Sie bleibt stehen."]
         );
-        assert_eq!(shown("两个人站在走廊里聊天。机器人从他们旁边经过。"), ["两个人站在走廊里聊天。", "机器人从他们旁边经过。"]);
+        assert_eq!(
+            shown("两个人站在走廊里聊天。机器人从他们旁边经过。"),
+            ["两个人站在走廊里聊天。", "机器人从他们旁边经过。"]
+        );
     }
 
     #[test]

@@ -62,15 +62,8 @@ pub enum Background {
 
 impl Background {
     /// Every reason.
-    pub const ALL: [Self; 7] = [
-        Self::Setting,
-        Self::Errand,
-        Self::Comment,
-        Self::Cause,
-        Self::Looks,
-        Self::Instruction,
-        Self::Report,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Setting, Self::Errand, Self::Comment, Self::Cause, Self::Looks, Self::Instruction, Self::Report];
 
     /// The reason in a word or two, as `socrates read` shows it.
     #[must_use]

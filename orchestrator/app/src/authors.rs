@@ -118,8 +118,8 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
 
 /// What behaviors are made from, as a setting of jobs: a model that writes rules in its proposal is not asked for them again.
 pub(crate) fn behaviors_by(author: &AuthorSpec, style: &BTreeMap<String, String>) -> BTreeMap<String, String> {
-    let compiled = author.is_model()
-        && Style::from_settings(style).is_ok_and(|style| socrates_author::compiled::compiles(&style));
+    let compiled =
+        author.is_model() && Style::from_settings(style).is_ok_and(|style| socrates_author::compiled::compiles(&style));
     if compiled { BTreeMap::from([(BEHAVIORS_BY.to_owned(), BY_PROPOSAL.to_owned())]) } else { BTreeMap::new() }
 }
 
@@ -286,7 +286,7 @@ mod tests {
         assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
         let by = |word: &str| paths_by(&config(&[&format!("author.paths_by={word}")]), &AuthorSpec::Auto);
         assert!(by("model").unwrap().is_empty() && by("solver").unwrap()["paths_by"] == "solver");
-        assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, solver"));
+        assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, model_alone, solver"));
         let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
         assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");
         assert!(style(&config(&[])).unwrap().is_empty());

@@ -1,13 +1,43 @@
 //! The offline author's account of a request, for questions in which the author reads the texts itself.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 use socrates_model::statement::{Became, Statement};
 use socrates_model::{Proposal, Reading};
 use socrates_prompts::{Question, Sentence, sentences};
 
+/// A reading whose facts have the ids of those that the question states, and ids that are free where it states none.
+pub(crate) fn beside(mut own: Reading, stated: &Reading) -> Reading {
+    let mut free = stated.facts.len();
+    let mut renamed = BTreeMap::new();
+    for fact in &mut own.facts {
+        let same = stated.facts.iter().find(|other| other.kind == fact.kind);
+        let id = same.map_or_else(
+            || {
+                free += 1;
+                format!("f{free}")
+            },
+            |same| same.id.clone(),
+        );
+        renamed.insert(std::mem::replace(&mut fact.id, id.clone()), id);
+    }
+    for statement in &mut own.statements {
+        if let Became::Read { facts, .. } = &mut statement.became {
+            for id in facts {
+                if let Some(new) = renamed.get(id) {
+                    id.clone_from(new);
+                }
+            }
+        }
+    }
+    own
+}
+
 /// The member `reading` of an answer: what the grammar read, sentence by sentence.
 pub(crate) fn account(question: &Question, reading: &Reading, proposal: &Proposal) -> Value {
-    let mut told = Vec::new();
+    // What is stated has its fact already.
+    let mut told: Vec<String> = question.reading.facts.iter().map(|fact| fact.id.clone()).collect();
     let shares = sentences(&question.request).into_iter().map(|sentence| {
         let share = share(&sentence, reading, proposal, &mut told);
         (sentence.id, share)
@@ -43,9 +73,8 @@ fn share(sentence: &Sentence, reading: &Reading, proposal: &Proposal, told: &mut
     if let Some(why) = unplayed {
         return json!({"cannot_be_played": why});
     }
-    let reason = own.iter().find_map(|one| {
-        if let Became::Background(reason) = one.became { Some(reason.name()) } else { None }
-    });
+    let reason =
+        own.iter().find_map(|one| if let Became::Background(reason) = one.became { Some(reason.name()) } else { None });
     match reason {
         Some(reason) => json!(reason),
         None => {

@@ -44,7 +44,8 @@ impl Offline {
 
 /// A proposal with the account of the request, which is read here as the question leaves it to its author.
 fn read_and_proposed(question: &Question) -> String {
-    let reading = crate::read(&question.request, &question.location);
+    let own = crate::read(&question.request, &question.location);
+    let reading = crate::accounted::beside(own, &question.reading);
     let proposal = proposal::propose(&Question { reading: reading.clone(), ..question.clone() });
     let mut answer = serde_json::to_value(&proposal).unwrap_or_default();
     if let Some(members) = answer.as_object_mut() {

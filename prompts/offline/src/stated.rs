@@ -83,7 +83,10 @@ fn acts(grammar: &Reading, statement: &Statement) -> Vec<String> {
         return Vec::new();
     }
     let lines = grammar.statements.iter().filter(overlaps).map(|other| &other.became);
-    lines.filter_map(|became| if let Became::Read { lines, .. } = became { Some(lines.clone()) } else { None }).flatten().collect()
+    lines
+        .filter_map(|became| if let Became::Read { lines, .. } = became { Some(lines.clone()) } else { None })
+        .flatten()
+        .collect()
 }
 
 /// Whether a fact is something that somebody does.

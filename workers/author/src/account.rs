@@ -24,7 +24,10 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
     for sentence in all.iter().filter(|sentence| !account.0.contains_key(&sentence.id)) {
         bad(
             format!("reading.{}", sentence.id),
-            format!("is missing; account for \"{}\": facts with quotes, a reason, or why it cannot be played", sentence.shown),
+            format!(
+                "is missing; account for \"{}\": facts with quotes, a reason, or why it cannot be played",
+                sentence.shown
+            ),
         );
     }
     let mut ids: BTreeSet<&str> = question.reading.facts.iter().map(|fact| fact.id.as_str()).collect();
@@ -39,11 +42,17 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
             if !holds(&sentence.shown, &claim.quote) {
                 bad(
                     format!("reading.{id}"),
-                    format!("quotes \"{}\", which does not stand in \"{}\"; copy its words", claim.quote, sentence.shown),
+                    format!(
+                        "quotes \"{}\", which does not stand in \"{}\"; copy its words",
+                        claim.quote, sentence.shown
+                    ),
                 );
             }
             if !ids.insert(&claim.fact) {
-                bad(format!("reading.{id}"), format!("names the fact `{}`, which is taken; number facts through", claim.fact));
+                bad(
+                    format!("reading.{id}"),
+                    format!("names the fact `{}`, which is taken; number facts through", claim.fact),
+                );
             }
         }
     }
@@ -131,7 +140,8 @@ mod tests {
     use socrates_model::reading::ReadBy;
     use socrates_model::{FaultCode, Location};
 
-    const ROUGH: &str = "It is a busy morning. A visitor comes towards the robot in the corridor and stops when the robot is near.";
+    const ROUGH: &str =
+        "It is a busy morning. A visitor comes towards the robot in the corridor and stops when the robot is near.";
 
     fn asked(rough: &str) -> (Question, Location) {
         let location = socrates_maps::shipped::load("office").unwrap();
@@ -247,5 +257,23 @@ mod tests {
             "s2": "errand", "s3": "setting"});
         let reading = attempt(&Says(answer.to_string()), &question).await.unwrap().reading.unwrap();
         assert_eq!((reading.by, reading.missing().len()), (ReadBy::AuthorAlone, 0));
+    }
+
+    #[tokio::test]
+    async fn every_shipped_request_can_be_accounted_for() {
+        for name in socrates_maps::shipped::names() {
+            let location = socrates_maps::shipped::load(name).unwrap();
+            for (file, text) in socrates_maps::shipped::requests(name) {
+                let request = Request::of_toml(text, None).unwrap();
+                let reading = socrates_offline::stated(&request, &location);
+                let question = Question::first(request, reading, location.clone(), 5);
+                let made = attempt(&Offline, &question).await;
+                let made = made.unwrap_or_else(|refused| panic!("{name}/{file}: {:?}", refused.faults));
+                let reading = made.reading.unwrap();
+                let all = sentences(&question.request).len();
+                assert_eq!(reading.statements.len(), all, "{name}/{file}: {:?}", reading.statements);
+                assert_eq!(reading.missing(), [""; 0], "{name}/{file}: {:?}", reading.statements);
+            }
+        }
     }
 }

@@ -5,9 +5,7 @@ use socrates_checks::{check_behaviors, check_paths, check_proposal};
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal, Reading};
-use socrates_prompts::{
-    Account, Message, Question, json, parse_account, parse_behaviors, parse_paths, parse_proposal,
-};
+use socrates_prompts::{Account, Message, Question, json, parse_account, parse_behaviors, parse_paths, parse_proposal};
 
 use crate::account;
 use crate::author::{Answer, AskError, Author, How};

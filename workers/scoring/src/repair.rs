@@ -3,7 +3,7 @@
 use socrates_model::job::Stage;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::{Repair, Standing};
-use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict, Where};
+use socrates_model::{Clause, Fault, FaultCode, Predicate, Trigger, Verdict, Where};
 
 use crate::evidence::Evidence;
 use crate::fidelity::{Finding, Judged};
@@ -57,7 +57,45 @@ pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<R
 
 /// Code, stage and message of a clause that was missed.
 fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
-    let (code, stage) = match &clause.predicate {
+    let (code, stage) = finding
+        .missed
+        .as_ref()
+        .and_then(elsewhere)
+        .map_or_else(|| by_predicate(clause, finding), |stage| (FaultCode::DNoTrig, stage));
+    let at = clause.predicate.human().map_or_else(|| Where::key(&clause.id), Where::agent);
+    let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
+    let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
+    let message = format!(
+        "clause {} (\"{}\") {state}{when}, margin {:.2}: {}",
+        clause.id, clause.text, finding.margin, finding.evidence
+    );
+    (stage, Fault::new(code, at, message))
+}
+
+/// The stage that can bring about a trigger that never held, where that is not the one which writes who reacts to what: the robot's script,
+/// what others do, and times are the proposal's, places of people the paths'.
+const fn elsewhere(trigger: &Trigger) -> Option<Stage> {
+    match trigger {
+        Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::RobotStopped
+        | Trigger::StoppedFor(_)
+        | Trigger::AfterSecs(_)
+        | Trigger::Did(..)
+        | Trigger::Done(_) => Some(Stage::Proposal),
+        Trigger::AtEncounter | Trigger::GoalReached => Some(Stage::Paths),
+        Trigger::Always
+        | Trigger::RobotVisible(_)
+        | Trigger::RobotNear(_)
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving
+        | Trigger::RobotPassed => None,
+    }
+}
+
+/// Code and stage of a clause by what it tests.
+fn by_predicate(clause: &Clause, finding: &Finding) -> (FaultCode, Stage) {
+    match &clause.predicate {
         _ if finding.early => (FaultCode::DEarly, Stage::Behaviors),
         predicate if is_meeting(predicate) => (FaultCode::DNoMeet, Stage::Paths),
         // Who was never near could not act: that is for the paths.
@@ -127,13 +165,5 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::RobotJoins { .. }
         | Predicate::RobotLeavesGroup { .. }
         | Predicate::RobotObeys { .. } => (FaultCode::DSetup, Stage::Paths),
-    };
-    let at = clause.predicate.human().map_or_else(|| Where::key(&clause.id), Where::agent);
-    let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
-    let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
-    let message = format!(
-        "clause {} (\"{}\") {state}{when}, margin {:.2}: {}",
-        clause.id, clause.text, finding.margin, finding.evidence
-    );
-    (stage, Fault::new(code, at, message))
+    }
 }

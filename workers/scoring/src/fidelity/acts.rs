@@ -301,7 +301,15 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
                 AgentId::Human(_) | AgentId::Robot => near,
             }
         }
-        None => Finding::never(-1.0, vec![], format!("{agent} never says {gesture}")),
+        None => {
+            let silent = Finding::never(-1.0, vec![], format!("{agent} never says {gesture}"));
+            let AgentId::Human(human) = agent else { return silent };
+            match since(signals, human, |rule| rule.gesture == Some(gesture)) {
+                Ok(_) => silent,
+                Err(never) => Finding::never(-1.0, vec![], format!("{}; {}", silent.evidence, never.evidence))
+                    .missing(never.missed),
+            }
+        }
     }
 }
 

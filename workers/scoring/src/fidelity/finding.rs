@@ -1,5 +1,6 @@
 //! What a monitor found.
 
+use socrates_model::Trigger;
 use socrates_model::report::Standing;
 
 /// Outcome of one monitor.
@@ -20,6 +21,8 @@ pub struct Finding {
     pub shift_s: Option<f64>,
     /// A reaction that came before its trigger: told apart for the repair.
     pub early: bool,
+    /// The trigger that never held, where a reaction had no reason: it tells who can mend it.
+    pub missed: Option<Trigger>,
 }
 
 impl Finding {
@@ -55,7 +58,16 @@ impl Finding {
 
     fn new(standing: Standing, margin: f64, times_s: Vec<f64>, evidence: impl Into<String>) -> Self {
         let margin = if margin.is_finite() { margin } else { f64::copysign(1e6, margin) };
-        Self { standing, margin, scale: 1.0, times_s, evidence: evidence.into(), shift_s: None, early: false }
+        Self {
+            standing,
+            margin,
+            scale: 1.0,
+            times_s,
+            evidence: evidence.into(),
+            shift_s: None,
+            early: false,
+            missed: None,
+        }
     }
 
     /// Sets the size of a clear margin.
@@ -76,6 +88,13 @@ impl Finding {
     #[must_use]
     pub const fn too_early(mut self) -> Self {
         self.early = true;
+        self
+    }
+
+    /// Names the trigger that never held.
+    #[must_use]
+    pub fn missing(mut self, trigger: Option<Trigger>) -> Self {
+        self.missed = trigger;
         self
     }
 

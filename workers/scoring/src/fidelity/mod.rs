@@ -22,6 +22,7 @@ mod groups;
 mod kept;
 mod leaves;
 mod meeting;
+mod missed;
 mod named_way;
 mod openings;
 mod plausible;
