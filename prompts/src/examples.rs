@@ -19,6 +19,12 @@ pub(crate) const MAP: &str = include_str!("../examples/map.json");
 pub(crate) const ALL: [&str; 2] =
     [include_str!("../examples/crossing.json"), include_str!("../examples/overtaking.json")];
 
+/// An answer to the first example that is refused, with its fault: what a model gets wrong most easily.
+pub const REFUSED_PROPOSAL: &str =
+    "`\"setup\":[{\"test\":\"robot_keeps min_m=0.4\"}]`: P-VERIFY, it judges what the robot does; that is an outcome.";
+/// The same of paths.
+pub const REFUSED_PATHS: &str = "`\"human_2\":{\"start\":\"n\",\"via\":[],\"meet\":\"c\",\"goal\":\"c\"}`: G-MEETEND, it ends where it meets the robot; one node more.";
+
 /// One worked example.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -42,10 +42,6 @@ const PROPOSAL: &[&str] = &[
     "outcome",
     "source",
     "test",
-    // Of the account of a sentence.
-    "fact",
-    "quote",
-    "of",
 ];
 
 const PATHS: &[&str] = &[

@@ -108,7 +108,6 @@ fn proposal(question: &Question) -> Value {
         ("expected_events", events),
         ("groups", list(&group)),
         ("humans", humans),
-        ("not_understood", list(&text())),
         ("notes", list(&text())),
         ("pattern", text()),
         ("place", place.clone()),
@@ -116,13 +115,14 @@ fn proposal(question: &Question) -> Value {
         ("title", text()),
     ];
     let reads = question.reading.by.is_author();
-    let account = reads.then(|| (account::MEMBER, account_of(question)));
-    let mut schema = object(&members.into_iter().chain(account).collect::<Vec<_>>());
+    // What a model could not use stands in its account.
+    let account = if reads { (account::MEMBER, account_of(question)) } else { ("not_understood", list(&text())) };
+    let mut schema = object(&members.into_iter().chain([account]).collect::<Vec<_>>());
     let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
     let place = json!({"type": "string", "enum": places});
     define(&mut schema, &[("human", object(&human)), ("place", place)]);
     if reads {
-        define(&mut schema, &[("share", share())]);
+        define(&mut schema, &[("lines", list(&text()))]);
     }
     strict(&mut schema, order::of(question.stage));
     schema
@@ -131,15 +131,8 @@ fn proposal(question: &Question) -> Value {
 /// The account of a request: a member for each sentence, so that none can be left out.
 fn account_of(question: &Question) -> Value {
     let each: Vec<(String, Value)> =
-        sentences(&question.request).into_iter().map(|one| (one.id, json!({"$ref": "#/$defs/share"}))).collect();
+        sentences(&question.request).into_iter().map(|one| (one.id, json!({"$ref": "#/$defs/lines"}))).collect();
     object(&each.iter().map(|(id, share)| (id.as_str(), share.clone())).collect::<Vec<_>>())
-}
-
-/// What becomes of a sentence; see [`crate::account`].
-fn share() -> Value {
-    let claim = object(&[("fact", text()), ("of", text()), ("quote", text())]);
-    let reason = json!({"type": "string", "enum": account::reasons()});
-    json!({"anyOf": [list(&claim), reason, object(&[(account::CANNOT, text())])]})
 }
 
 /// The schema of several answers of this form in one.
@@ -194,7 +187,9 @@ fn paths(question: &Question, form: PathsForm) -> Value {
         }
         PathsForm::Walk | PathsForm::Nodes => (list(&one), list(&one)),
     };
-    let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), human.clone())).collect();
+    let human_ref = json!({"$ref": "#/$defs/human"});
+    defs.push(("human".to_owned(), human));
+    let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), human_ref.clone())).collect();
     let mut members = vec![(THINKING, thinking()), ("humans", object(&each)), ("robot", robot)];
     if form == PathsForm::Nodes {
         let human = json!({"type": "string", "enum": names});

@@ -27,7 +27,11 @@ pub(crate) fn proposal_tables() -> String {
                 format!("{line}: {meaning}\n")
             }
         };
-        rows.iter().map(|test| told(&test.form, test.meaning)).collect()
+        let (rare, usual): (Vec<Test>, Vec<Test>) =
+            rows.into_iter().partition(|test| RARE.contains(&name_of(&test.form)));
+        let each: String = usual.iter().map(|test| told(&test.form, test.meaning)).collect();
+        let rare: Vec<String> = rare.iter().map(|test| signature(&test.form)).collect();
+        if rare.is_empty() { each } else { format!("{each}Rarely, where asked for: {}\n", rare.join(", ")) }
     };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
@@ -45,6 +49,48 @@ pub(crate) fn proposal_tables() -> String {
         tests(outcome),
     )
 }
+
+/// Tests of a few requests only: their names say what they are.
+const RARE: [&str; 10] = [
+    "meets_again",
+    "parallel",
+    "flow",
+    "density",
+    "surrounds",
+    "converges",
+    "door_opens",
+    "hidden_until",
+    "before",
+    "on_time",
+];
+
+/// The name of a test.
+fn name_of(form: &Value) -> &str {
+    match form {
+        Value::Object(members) => members.keys().next().map_or("", String::as_str),
+        Value::String(name) => name,
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Array(_) => "",
+    }
+}
+
+/// How the humans of a proposal go, by their relations to the robot's way: a line for each that there is.
+pub(crate) fn ways_of(proposal: &Proposal) -> String {
+    let there = |relation: &Relation| proposal.humans.iter().any(|human| human.relation == *relation);
+    let rows = WAYS.iter().filter(|(relation, _)| there(relation));
+    rows.map(|(relation, way)| format!("`{}`: {way}\n", relation.name())).collect()
+}
+
+const WAYS: [(Relation, &str); 9] = [
+    (Relation::Frontal, "the robot's edges at the encounter in the other direction."),
+    (Relation::Crossing, "comes to the encounter, or leaves it, by an edge that the robot does not use."),
+    (Relation::Behind, "the robot's nodes in the same direction, from its start or before it."),
+    (Relation::Ahead, "the same direction, starting further on than the robot."),
+    (Relation::Abreast, "the same nodes as the robot."),
+    (Relation::Static, "one node, the encounter itself; start and goal are the same."),
+    (Relation::Leaving, "starts inside the room or elevator, comes out of its door, goes on past the encounter."),
+    (Relation::Aside, "one node off the robot's path; no encounter."),
+    (Relation::Staying, "one node inside the room or elevator; no encounter, or the robot's last node."),
+];
 
 /// Triggers, actions and gestures of rules, in their full form.
 pub(crate) fn rule_tables() -> String {

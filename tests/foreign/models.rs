@@ -116,7 +116,7 @@ fn accounted(proposal: &str, fates: &Fates<'_>) -> String {
     let (mut reading, mut facts) = (serde_json::Map::new(), 0);
     for (place, fate) in fates.iter().enumerate() {
         let share = match fate {
-            Err(reason) => json!(reason),
+            Err(reason) => json!([reason]),
             Ok(asked) => asked
                 .iter()
                 .map(|(quote, who)| {
@@ -131,7 +131,7 @@ fn accounted(proposal: &str, fates: &Fates<'_>) -> String {
                     };
                     let clause = clauses.iter_mut().find(about).unwrap_or_else(|| panic!("nothing shows {quote}"));
                     clause["source"] = json!(format!("f{facts}"));
-                    json!({"fact": format!("f{facts}"), "quote": quote, "of": who})
+                    json!(format!("f{facts} {who}: {quote}"))
                 })
                 .collect(),
         };

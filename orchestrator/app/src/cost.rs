@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize as _;
 use serde_json::{Value, json};
+use socrates_author::{compiled, paths_by};
 use socrates_model::{FaultCode, Signature};
 use socrates_orchestrator::{pipeline, price_of};
 
@@ -161,6 +162,10 @@ fn sums(provenance: &Value) -> BTreeMap<String, Sum> {
             let Some([input, output]) = tokens(&exchange) else { continue };
             let name = |key: &str| exchange.get(key).and_then(Value::as_str).filter(|name| !name.is_empty());
             let model = name("model").or_else(|| name("author")).unwrap_or("unknown");
+            // Compiled rules and the solver's paths are no call of anybody.
+            if [compiled::NAME, paths_by::NAME].contains(&model) {
+                continue;
+            }
             let unanswered = u64::from(name("model").is_none() && (input, output) == (0, 0));
             let how = exchange.get("how").cloned().unwrap_or_default();
             models.entry(model.to_owned()).or_default().add(&Sum {
@@ -213,6 +218,8 @@ mod tests {
         let provenance = json!({"jobs": [
             {"attempts": [{"exchanges": [bad, "refused text"]}, {"exchanges": [good]}], "exchanges": [good]},
             {"attempts": [], "exchanges": [exchange("offline/1", "c", [0, 0])]},
+            {"attempts": [], "exchanges": [exchange("compiled/1", "d", [0, 0])]},
+            {"attempts": [], "exchanges": [exchange("solver/1", "e", [0, 0])]},
         ]});
         let found = sums(&provenance);
         let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, estimated: false, unanswered: 0 };

@@ -64,22 +64,22 @@ fn share(sentence: &Sentence, reading: &Reading, proposal: &Proposal, told: &mut
             |clause| clause.predicate.human().map_or_else(|| "all".to_owned(), |human| human.to_string()),
         );
         let quote = if sentence.shown.contains(&fact.quote) { &fact.quote } else { &sentence.shown };
-        claims.push(json!({"fact": id, "quote": quote, "of": of}));
+        claims.push(json!(format!("{id} {of}: {quote}")));
     }
     if !claims.is_empty() {
         return Value::Array(claims);
     }
     let unplayed = own.iter().find(|one| one.is_unplayed()).map(|one| one.told());
     if let Some(why) = unplayed {
-        return json!({"cannot_be_played": why});
+        return json!([format!("cannot_be_played: {why}")]);
     }
     let reason =
         own.iter().find_map(|one| if let Became::Background(reason) = one.became { Some(reason.name()) } else { None });
     match reason {
-        Some(reason) => json!(reason),
+        Some(reason) => json!([reason]),
         None => {
             let id = format!("r{}", sentence.id.trim_start_matches('s'));
-            json!([{"fact": id, "quote": sentence.shown, "of": "robot"}])
+            json!([format!("{id} robot: {}", sentence.shown)])
         }
     }
 }

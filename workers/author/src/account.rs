@@ -37,7 +37,7 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
             bad(format!("reading.{id}"), format!("is no sentence of the request; it has {} …", known.join(", ")));
             continue;
         };
-        let Share::Asked(claims) = share else { continue };
+        let Share::Asked { claims, .. } = share else { continue };
         for claim in claims {
             if !holds(&sentence.shown, &claim.quote) {
                 bad(
@@ -73,10 +73,10 @@ pub(crate) fn reading(account: &Account, proposal: &Proposal, question: &Questio
     let all = sentences(&question.request);
     for sentence in &all {
         let Some(share) = account.0.get(&sentence.id) else { continue };
-        if let Share::Asked(claims) = share {
+        if let Share::Asked { claims, .. } = share {
             reading.facts.extend(claims.iter().map(fact));
         }
-        reading.statements.push(statement(sentence, share, proposal));
+        reading.statements.extend(statements(sentence, share, proposal));
     }
     if question.request.rough_scenario.as_deref().is_some_and(|text| !text.trim().is_empty()) {
         reading.humans = proposal.humans.iter().map(read_human).collect();
@@ -103,16 +103,26 @@ fn read_human(human: &socrates_model::HumanProposal) -> ReadHuman {
     }
 }
 
-fn statement(sentence: &Sentence, share: &Share, proposal: &Proposal) -> Statement {
-    let became = match share {
-        Share::Background(reason) => Became::Background(*reason),
-        Share::CannotBePlayed(why) => Became::NotPlayed { why: why.as_str().into() },
-        Share::Asked(claims) => Became::Read {
-            lines: claims.iter().flat_map(|claim| lines(claim, proposal)).collect(),
-            facts: claims.iter().map(|claim| claim.fact.clone()).collect(),
-        },
+/// The statements of a sentence: one, or two where a part of it cannot be played.
+fn statements(sentence: &Sentence, share: &Share, proposal: &Proposal) -> Vec<Statement> {
+    let of = |became: Became| Statement {
+        at: sentence.at,
+        span: sentence.span,
+        quote: sentence.quote.clone(),
+        became,
+        waived: false,
     };
-    Statement { at: sentence.at, span: sentence.span, quote: sentence.quote.clone(), became, waived: false }
+    match share {
+        Share::Background(reason) => vec![of(Became::Background(*reason))],
+        Share::Asked { claims, cannot } => {
+            let read = (!claims.is_empty()).then(|| Became::Read {
+                lines: claims.iter().flat_map(|claim| lines(claim, proposal)).collect(),
+                facts: claims.iter().map(|claim| claim.fact.clone()).collect(),
+            });
+            let unplayed = cannot.as_ref().map(|why| Became::NotPlayed { why: why.as_str().into() });
+            read.into_iter().chain(unplayed).map(of).collect()
+        }
+    }
 }
 
 /// Whether the request gives up the words of a statement.
@@ -185,14 +195,19 @@ mod tests {
         let (question, _) = asked(ROUGH);
         let told = refused(&question, |reading| drop(reading.as_object_mut().unwrap().remove("s1"))).await;
         assert!(told[0].contains("It is a busy morning."), "{told:?}");
-        let told = refused(&question, |reading| reading["s9"] = json!("setting")).await;
+        let told = refused(&question, |reading| reading["s9"] = json!(["setting"])).await;
         assert!(told[0].contains("no sentence of the request"), "{told:?}");
     }
 
     #[tokio::test]
     async fn a_quote_that_does_not_stand_there_and_an_id_twice_are_refused() {
         let (question, _) = asked(ROUGH);
-        let told = refused(&question, |reading| reading["s2"][0]["quote"] = json!("a visitor who flies")).await;
+        let told = refused(&question, |reading| {
+            let line = reading["s2"][0].as_str().unwrap().to_owned();
+            let (before, _) = line.split_once(':').unwrap();
+            reading["s2"][0] = json!(format!("{before}: a visitor who flies"));
+        })
+        .await;
         assert!(told[0].contains("does not stand in"), "{told:?}");
         let told = refused(&question, |reading| {
             let first = reading["s2"][0].clone();
@@ -206,8 +221,7 @@ mod tests {
     async fn a_fact_that_nobody_serves_is_refused() {
         let (question, _) = asked(ROUGH);
         let mut answer = answer(&question).await;
-        let more = json!({"fact": "f77", "quote": "busy", "of": "human_1"});
-        answer["reading"]["s1"] = json!([more]);
+        answer["reading"]["s1"] = json!(["f77 human_1: busy"]);
         let refused = attempt(&Says(answer.to_string()), &question).await.unwrap_err();
         assert_eq!(refused.faults[0].code, FaultCode::PVerify);
         assert!(refused.faults[0].to_string().contains("\"busy\" was asked for"), "{:?}", refused.faults);
@@ -222,7 +236,7 @@ mod tests {
             clause.as_object_mut().unwrap().remove("source");
         }
         for id in ["s1", "s2"] {
-            answer["reading"][id] = json!("looks");
+            answer["reading"][id] = json!(["looks"]);
         }
         let made = attempt(&Says(answer.to_string()), &question).await.unwrap();
         assert_eq!(made.reading.unwrap().missing()[0], "A visitor comes towards the robot in the corridor.");
@@ -235,7 +249,7 @@ mod tests {
     async fn what_cannot_be_played_is_missing_with_the_authors_reason() {
         let (question, _) = asked(ROUGH);
         let mut answer = answer(&question).await;
-        answer["reading"]["s1"] = json!({"cannot_be_played": "mornings cannot be seen"});
+        answer["reading"]["s1"] = json!(["cannot_be_played: mornings cannot be seen"]);
         let reading = attempt(&Says(answer.to_string()), &question).await.unwrap().reading.unwrap();
         assert_eq!(reading.missing(), ["It is a busy morning."]);
         assert!(reading.statements[0].told().contains("mornings"), "{:?}", reading.statements[0]);
@@ -253,8 +267,8 @@ mod tests {
         }
         let last = sources.iter().position(|clause| clause.to_string().contains("human_1")).unwrap();
         sources[last]["source"] = json!("f1");
-        answer["reading"] = json!({"s1": [{"fact": "f1", "quote": "kommt dem Roboter im Flur entgegen", "of": "human_1"}],
-            "s2": "errand", "s3": "setting"});
+        answer["reading"] =
+            json!({"s1": ["f1 human_1: kommt dem Roboter im Flur entgegen"], "s2": ["errand"], "s3": ["setting"]});
         let reading = attempt(&Says(answer.to_string()), &question).await.unwrap().reading.unwrap();
         assert_eq!((reading.by, reading.missing().len()), (ReadBy::AuthorAlone, 0));
     }

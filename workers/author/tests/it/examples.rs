@@ -46,3 +46,19 @@ async fn an_example_means_the_same_in_every_form() {
     assert!(paths.windows(2).all(|pair| pair[0] == pair[1]), "{paths:?}");
     assert!(actions.windows(2).all(|pair| pair[0] == pair[1]), "{actions:?}");
 }
+
+/// What a question shows as refused is refused with the fault that it names.
+#[tokio::test]
+async fn what_is_shown_as_refused_is_refused_for_the_reason_that_is_given() {
+    for (stage, shown) in [(Stage::Proposal, examples::REFUSED_PROPOSAL), (Stage::Paths, examples::REFUSED_PATHS)] {
+        let (question, mut answer) = examples::worked(stage, &Style::default(), ReadBy::Author).remove(0);
+        let (part, told) = shown.trim_start_matches('`').split_once("`: ").unwrap();
+        let part: serde_json::Value = serde_json::from_str(&format!("{{{part}}}")).unwrap();
+        let (name, value) = part.as_object().unwrap().iter().next().unwrap();
+        let home = if stage == Stage::Proposal { "expected_events" } else { "humans" };
+        answer[home][name] = value.clone();
+        let refused = attempt(&Says(answer.to_string()), &question).await.unwrap_err();
+        let codes: Vec<&str> = refused.faults.iter().map(|fault| fault.code.code()).collect();
+        assert!(codes.contains(&told.split(',').next().unwrap()), "{stage}: {codes:?}");
+    }
+}
