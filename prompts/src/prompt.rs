@@ -30,7 +30,7 @@ const TASK: usize = 300;
 const ROUGH: usize = 1_500;
 const PLACE: usize = 1_000;
 /// Most characters of an author's own words that come back in a later question.
-const DESCRIPTION: usize = 2_000;
+const DESCRIPTION: usize = 400;
 const BEHAVIOR: usize = 1_000;
 
 /// Which words were used.

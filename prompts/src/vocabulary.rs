@@ -21,7 +21,7 @@ pub(crate) fn proposal_tables() -> String {
             let line = signature(form);
             let said = line.split(' ').next().unwrap_or_default().replace('_', " ");
             // Some names say it all.
-            if meaning.trim_start_matches("the ").starts_with(&said) {
+            if PLAIN.contains(&name_of(form)) || meaning.trim_start_matches("the ").starts_with(&said) {
                 line + "\n"
             } else {
                 format!("{line}: {meaning}\n")
@@ -37,14 +37,14 @@ pub(crate) fn proposal_tables() -> String {
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
          `latched` goes on when the triggers no longer hold. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
          `meets human=human_1 within_m=2.5`, pairs as `gap_m=0.5..3.5`. Distances in m, times in s.\n\
-         Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}## Script, when\n{}## Script, act\n{}\
+         Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
         forms(&actions()),
-        gestures(),
+        Gesture::ALL.iter().map(|gesture| gesture.name()).collect::<Vec<_>>().join(", "),
         short(&relations()),
-        short(&robot_when()),
-        short(&robot_do()),
+        listed(&robot_when()),
+        listed(&robot_do()),
         tests(setup),
         tests(outcome),
     )
@@ -62,6 +62,22 @@ const RARE: [&str; 10] = [
     "hidden_until",
     "before",
     "on_time",
+];
+
+/// Tests whose names and values say all that an author needs.
+const PLAIN: [&str; 12] = [
+    "runs_away",
+    "gives_way",
+    "leaves",
+    "enters",
+    "stays_aside",
+    "formation",
+    "walks_together",
+    "encounter_at",
+    "blocks",
+    "robot_arrives",
+    "abreast",
+    "meets",
 ];
 
 /// The name of a test.
@@ -188,6 +204,15 @@ pub(crate) fn script_line(rule: &RobotRule) -> String {
     format!("{} -> {}", terse::line(&json!(rule.when)), terse::line(&json!(rule.act)))
 }
 
+/// Rows in one line, with what their names do not say.
+fn listed(rows: &[(Value, String)]) -> String {
+    let each = rows.iter().map(|(form, meaning)| {
+        let line = terse::line(form);
+        if meaning.is_empty() { line } else { format!("{line} ({meaning})") }
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
 fn short(rows: &[(Value, String)]) -> String {
     rows.iter().map(|(form, meaning)| format!("{}: {meaning}\n", terse::line(form))).collect()
 }
@@ -266,23 +291,23 @@ fn relations() -> Vec<(Value, String)> {
 
 fn robot_when() -> Vec<(Value, String)> {
     vec![
-        row(&RobotWhen::Start, "from the start"),
+        row(&RobotWhen::Start, ""),
         row(&RobotWhen::Blocked(3.0), "a human in its way so many seconds"),
-        row(&RobotWhen::HumanNear(3.0), "a human is within this distance"),
-        row(&RobotWhen::HumanSays(Gesture::Wait), "a human makes this gesture"),
+        row(&RobotWhen::HumanNear(3.0), ""),
+        row(&RobotWhen::HumanSays(Gesture::Wait), ""),
         row(&RobotWhen::AtEncounter(HumanId::new(1)), "where it meets this human"),
-        row(&RobotWhen::AfterSecs(10.0), "so many seconds after the start"),
+        row(&RobotWhen::AfterSecs(10.0), ""),
     ]
 }
 
 fn robot_do() -> Vec<(Value, String)> {
     vec![
-        row(&RobotDo::Say(Gesture::ExcuseMe), "makes the gesture"),
-        row(&RobotDo::Hold(3.0), "stands for so many seconds"),
+        row(&RobotDo::Say(Gesture::ExcuseMe), ""),
+        row(&RobotDo::Hold(3.0), "stands so many seconds"),
         row(&RobotDo::WaitForLeavers, "waits until all who leave are out; `when` it comes to the door, as human_near"),
-        row(&RobotDo::Follow(HumanId::new(1)), "follows this human"),
-        row(&RobotDo::Abreast(HumanId::new(1)), "goes beside this human"),
-        row(&RobotDo::Overtake(HumanId::new(1)), "passes this human, who is slower"),
+        row(&RobotDo::Follow(HumanId::new(1)), ""),
+        row(&RobotDo::Abreast(HumanId::new(1)), ""),
+        row(&RobotDo::Overtake(HumanId::new(1)), "a slower one"),
         row(&RobotDo::Lead(4.0), "waits for followers further behind"),
     ]
 }

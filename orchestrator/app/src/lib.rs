@@ -67,6 +67,8 @@ mod library_index;
 pub mod logs;
 mod many;
 pub mod map;
+#[cfg(test)]
+mod mending_tests;
 pub mod merge;
 #[cfg(test)]
 mod motion_runs;

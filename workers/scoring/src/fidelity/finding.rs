@@ -3,6 +3,15 @@
 use socrates_model::Trigger;
 use socrates_model::report::Standing;
 
+/// A trigger that never held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Missed {
+    /// The trigger.
+    pub trigger: Trigger,
+    /// How near the robot came in the whole run, m.
+    pub nearest_m: f64,
+}
+
 /// Outcome of one monitor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
@@ -22,7 +31,7 @@ pub struct Finding {
     /// A reaction that came before its trigger: told apart for the repair.
     pub early: bool,
     /// The trigger that never held, where a reaction had no reason: it tells who can mend it.
-    pub missed: Option<Trigger>,
+    pub missed: Option<Missed>,
 }
 
 impl Finding {
@@ -93,8 +102,8 @@ impl Finding {
 
     /// Names the trigger that never held.
     #[must_use]
-    pub fn missing(mut self, trigger: Option<Trigger>) -> Self {
-        self.missed = trigger;
+    pub fn missing(mut self, missed: Option<Missed>) -> Self {
+        self.missed = missed;
         self
     }
 

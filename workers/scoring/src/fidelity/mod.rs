@@ -41,7 +41,7 @@ mod verdict;
 mod windows;
 
 pub use clauses::{Judged, clauses_of, judge, standing_of};
-pub use finding::Finding;
+pub use finding::{Finding, Missed};
 pub use plausible::Flaw;
 pub use robot::{GOAL_M, goal as robot_goal};
 pub use signals::{Moment, Signals};

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use socrates_model::{Action, AgentId, Gesture, HumanId, Rule, Trigger};
 
 use crate::fidelity::acts::{spans, timely};
-use crate::fidelity::finding::Finding;
+use crate::fidelity::finding::{Finding, Missed};
 use crate::fidelity::kept::kept;
 use crate::fidelity::meeting::absent;
 use crate::fidelity::missed;
@@ -98,11 +98,11 @@ fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) 
 /// The finding where triggers never held together and were nearest to it at a moment: which of them did not, and what was true instead.
 pub(super) fn never_came(signals: &Signals<'_>, human: HumanId, when: &[Trigger], near: Mark) -> Finding {
     let phrase = when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
-    let missed = missed_at(signals, human, when, near.t);
-    let instead =
-        missed.as_ref().map_or_else(String::new, |trigger| format!(": {}", missed::told(signals, human, trigger)));
+    let trigger = missed_at(signals, human, when, near.t);
+    let instead = trigger.as_ref().map_or_else(String::new, |one| format!(": {}", missed::told(signals, human, one)));
     let text = format!("the reason of {human} never came ({phrase}){instead}");
-    Finding::never(near.margin, vec![near.t], text).missing(missed)
+    let nearest_m = signals.of(human).iter().map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min);
+    Finding::never(near.margin, vec![near.t], text).missing(trigger.map(|trigger| Missed { trigger, nearest_m }))
 }
 
 /// Of several triggers that never held together, the one that was farthest from it at this time.
