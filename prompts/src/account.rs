@@ -95,7 +95,7 @@ fn share(id: &str, value: &Value) -> Result<Share, Fault> {
         return Err(wrong(&format!(".{id}"), message));
     }
     let several = read.len() > 1;
-    let (mut claims, mut cannot) = (Vec::new(), None);
+    let (mut claims, mut cannot) = (Vec::new(), Vec::new());
     for line in read {
         match line {
             Line::Background(reason) if !several => return Ok(Share::Background(reason)),
@@ -106,10 +106,11 @@ fn share(id: &str, value: &Value) -> Result<Share, Fault> {
                 );
                 return Err(wrong(&format!(".{id}"), message));
             }
-            Line::Cannot(why) => cannot = Some(cannot.map_or(why.clone(), |before| format!("{before}; {why}"))),
+            Line::Cannot(why) => cannot.push(why),
             Line::Claim(claim) => claims.push(claim),
         }
     }
+    let cannot = (!cannot.is_empty()).then(|| cannot.join("; "));
     Ok(Share::Asked { claims, cannot })
 }
 

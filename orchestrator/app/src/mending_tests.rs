@@ -20,6 +20,8 @@ use crate::prepare::{Prepared, prepare_text};
 /// Spoils a scenario; `None` where it has nothing of the kind.
 type Spoil = fn(&mut Made, &Location) -> Option<()>;
 
+const PAGE: &str = include_str!("../../../prompts/README.md");
+
 /// Two requests more, in which people wait for signs.
 const SIGNS: [(&str, &str); 2] = [
     (
@@ -200,7 +202,10 @@ async fn every_dynamic_fault_goes_to_a_stage_whose_answer_mends_it() {
         .iter()
         .map(|((what, code, stage), (count, ok))| format!("| {what} | {code} | {stage} | {ok} of {count} |"))
         .collect();
-    println!("| spoiled | first fault | sent to | mended |\n|---|---|---|---|\n{}", rows.join("\n"));
+    // The page says what was found.
+    let told: Vec<&str> =
+        PAGE.lines().filter(|line| SPOILS.iter().any(|(what, ..)| line.starts_with(&format!("| {what} |")))).collect();
+    assert_eq!(told, rows, "prompts/README.md:\n{}", rows.join("\n"));
     for (what, stage, _) in SPOILS {
         assert!(
             seen.get(what).is_some_and(|count| *count > 0),

@@ -28,7 +28,8 @@ pub(super) async fn examples() -> Examples {
     let mut proposal = proposed(&request, &location).await;
     let read_by_author =
         Question::first(request.clone(), socrates_offline::stated(&request, &location), location.clone(), 1);
-    let mut answer: serde_json::Value = serde_json::from_str(&Offline::answer(&read_by_author)).unwrap();
+    let mut answer: serde_json::Value =
+        serde_json::from_str(&attempt(&Offline, &read_by_author).await.unwrap().exchange.answer).unwrap();
     answer["reading"].as_object_mut().unwrap().remove("s1");
     let refused = attempt(&Says(answer.to_string()), &read_by_author).await.unwrap_err();
     keep(&mut all, refused.faults.into_iter().filter(|fault| fault.code == FaultCode::PAccount));

@@ -3,7 +3,7 @@
 use socrates_model::job::Stage;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::{Repair, Standing};
-use socrates_model::{Action, AgentId, Clause, Fault, FaultCode, HumanId, Predicate, Trigger, Verdict, Where};
+use socrates_model::{Action, AgentId, Clause, Fault, FaultCode, Predicate, Trigger, Verdict, Where};
 
 use crate::evidence::Evidence;
 use crate::fidelity::{Finding, Judged, Missed};
@@ -61,19 +61,27 @@ pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<R
 
 /// Whether whoever is to do what a clause tests has a rule for it: then a reason that came and nothing done is for who writes rules.
 fn has_rule(evidence: &Evidence<'_>, clause: &Clause) -> bool {
-    let (who, does): (HumanId, fn(&Action) -> bool) = match &clause.predicate {
-        Predicate::Blocks { human, .. } => (*human, |act| *act == Action::Block),
-        Predicate::Looks { human, .. } => (*human, |act| matches!(act, Action::LookAtRobot | Action::LookAt(_))),
-        Predicate::RunsAway { human, .. } => (*human, |act| *act == Action::RunAway),
-        Predicate::GivesWay { human } => (*human, |act| *act == Action::GiveWay),
-        Predicate::MakesRoom { human } => (*human, |act| *act == Action::MakeRoom),
-        Predicate::Follows { follower: AgentId::Human(human), .. } => {
-            (*human, |act| matches!(act, Action::FollowRobot | Action::FollowHuman(_)))
-        }
-        _ => return false,
+    let follower = if let Predicate::Follows { follower: AgentId::Human(human), .. } = &clause.predicate {
+        Some(*human)
+    } else {
+        None
     };
-    let human = evidence.proposal.and_then(|proposal| proposal.human(who));
-    human.is_some_and(|human| human.rules.iter().any(|rule| does(&rule.act)))
+    let human = follower.or_else(|| clause.predicate.human());
+    let human = human.and_then(|human| evidence.proposal.and_then(|proposal| proposal.human(human)));
+    human.is_some_and(|human| human.rules.iter().any(|rule| does(&clause.predicate, &rule.act)))
+}
+
+/// Whether an action is what a clause tests.
+const fn does(predicate: &Predicate, act: &Action) -> bool {
+    matches!(
+        (predicate, act),
+        (Predicate::Blocks { .. }, Action::Block)
+            | (Predicate::Looks { .. }, Action::LookAtRobot | Action::LookAt(_))
+            | (Predicate::RunsAway { .. }, Action::RunAway)
+            | (Predicate::GivesWay { .. }, Action::GiveWay)
+            | (Predicate::MakesRoom { .. }, Action::MakeRoom)
+            | (Predicate::Follows { .. }, Action::FollowRobot | Action::FollowHuman(_))
+    )
 }
 
 /// Code, stage and message of a clause that was missed; `ruled` tells whether its people have a rule for what it tests.
