@@ -42,7 +42,7 @@ fn the_configured_time_of_an_author_governs_and_every_question_is_counted() {
     assert_eq!(finished.code, 5, "{}\n{}", finished.out, finished.err);
     assert_eq!(asked.load(Ordering::SeqCst), 3, "once, and twice again: {}", finished.err);
     assert!(
-        finished.err.contains("T-TIMEOUT") && finished.err.contains("no answer within 1000 ms"),
+        finished.err.contains("T-TIMEOUT") && finished.err.contains("nothing came from the server within 1000 ms"),
         "{}",
         finished.err
     );
