@@ -2,6 +2,7 @@
 //! everything installed; elsewhere what is missing is left out and named.
 
 mod bags;
+mod consoles;
 mod deploy;
 mod drivers;
 mod live;

@@ -261,6 +261,11 @@ fn a_scenario_is_realised_over_chat_completions() {
 }
 
 #[test]
+fn a_scenario_is_realised_over_responses() {
+    realised_over("responses:gpt-4o", "http://127.0.0.1:PORT/v1", "responses.");
+}
+
+#[test]
 fn a_scenario_is_realised_over_anthropic_messages() {
     realised_over("anthropic:claude-sonnet", "http://127.0.0.1:PORT", "anthropic.");
 }

@@ -33,6 +33,7 @@ pub mod collect;
 pub mod compare;
 mod conclude;
 pub mod config;
+pub mod console;
 mod cores;
 pub mod cost;
 mod coverage;

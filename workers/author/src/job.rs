@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use socrates_llm::Listener;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_model::{FailureClass, Fault, Reading};
@@ -73,6 +74,12 @@ impl AuthorContext {
     #[must_use]
     pub const fn new(keys: Keys) -> Self {
         Self { keys }
+    }
+
+    /// The same context, whose authors tell this how many characters they have written so far.
+    #[must_use]
+    pub fn heard_by(&self, hear: impl Fn(u64) + Send + Sync + 'static) -> Self {
+        Self { keys: Keys { listener: Listener::new(hear), ..self.keys.clone() } }
     }
 
     /// Does a job: one question, one ask.

@@ -101,13 +101,21 @@ struct Counted {
     #[serde(default)]
     completion_tokens: u64,
     #[serde(default)]
-    prompt_tokens_details: Option<Details>,
+    prompt_tokens_details: Option<InputDetails>,
+    #[serde(default)]
+    completion_tokens_details: Option<OutputDetails>,
 }
 
 #[derive(Deserialize)]
-struct Details {
+struct InputDetails {
     #[serde(default)]
     cached_tokens: Option<u64>,
+}
+
+#[derive(Deserialize)]
+struct OutputDetails {
+    #[serde(default)]
+    reasoning_tokens: Option<u64>,
 }
 
 /// The answer in a successful body.
@@ -126,6 +134,7 @@ pub(super) fn answer(bytes: &[u8], call: &Call<'_>) -> Result<ChatAnswer, ChatEr
         input: counted.prompt_tokens,
         cached: counted.prompt_tokens_details.and_then(|details| details.cached_tokens).unwrap_or(0),
         output: counted.completion_tokens,
+        thought: counted.completion_tokens_details.and_then(|details| details.reasoning_tokens).unwrap_or(0),
     });
     Ok(call.told(said.content.unwrap_or_default(), cut, completion.model, usage))
 }
