@@ -1,0 +1,65 @@
+//! What a region is: a room, or floor along which ways lead.
+
+use crate::floor::Floor;
+use crate::region::{Region, Regions};
+use crate::throat::Opening;
+
+/// Largest floor of a room, m²; what is larger has ways of its own.
+const ROOM_MOST_M2: f64 = 130.0;
+/// How many times as long as wide a room is at most.
+const ROOM_ASPECT: f64 = 3.6;
+/// Doors from which on a slim region is a corridor.
+const CORRIDOR_DOORS: usize = 3;
+/// Sides of an elevator car, m: ADA 2010 §407.4 asks for 1.7 by 1.3 m, cars for beds have 1.8 by 2.7 m.
+const CAR_M: (f64, f64) = (1.05, 3.0);
+/// Widest door of an elevator, m.
+const CAR_DOOR_M: f64 = 1.85;
+
+/// Kinds of regions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum RegionKind {
+    /// One place with doors.
+    Room,
+    /// One place that is open to another one.
+    Bay,
+    /// Corridors, halls, aisles: a network.
+    Ways,
+}
+
+/// Length over width of a rectangle with the region's area and width.
+pub(crate) fn aspect(region: &Region) -> f64 {
+    let wide = (2.0 * region.bare_m).max(0.1);
+    region.area_m2 / (wide * wide)
+}
+
+/// The kind of a region.
+pub(crate) fn kind(regions: &Regions, at: usize) -> RegionKind {
+    let Some(region) = regions.all.get(at) else { return RegionKind::Ways };
+    let doors = regions.passages_of(at).count();
+    let slim = aspect(region);
+    let room = doors > 0
+        && region.area_m2 <= ROOM_MOST_M2
+        && if doors >= CORRIDOR_DOORS { slim < 0.5 * ROOM_ASPECT } else { slim < ROOM_ASPECT };
+    let open = regions.passages_of(at).any(|(_, passage)| passage.throat.opening == Opening::Wide);
+    match (room, open) {
+        (true, false) => RegionKind::Room,
+        (true, true) => RegionKind::Bay,
+        (false, _) => RegionKind::Ways,
+    }
+}
+
+/// Whether a region may be the car of an elevator: small, about square, one door.
+pub(crate) fn may_be_car(floor: &Floor, regions: &Regions, at: usize) -> bool {
+    let Some(region) = regions.all.get(at) else { return false };
+    // The robot's middle keeps its half width from the walls on both sides.
+    let side = |(first, last): (usize, usize)| {
+        #[expect(clippy::cast_precision_loss, reason = "cells of a map")]
+        let cells = (last + 1).saturating_sub(first) as f64;
+        (cells - 1.0) * floor.cell_m + 2.0 * crate::floor::BODY_M
+    };
+    let (wide, tall) = (side(region.extent.columns), side(region.extent.rows));
+    let mut doors = regions.passages_of(at);
+    let (Some((_, door)), None) = (doors.next(), doors.next()) else { return false };
+    let sized = |m: f64| (CAR_M.0..=CAR_M.1).contains(&m);
+    sized(wide) && sized(tall) && region.area_m2 >= 0.8 * wide * tall && door.throat.width_m <= CAR_DOOR_M
+}
