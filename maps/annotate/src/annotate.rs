@@ -12,6 +12,7 @@ use crate::cells::height;
 use crate::floor::{BODY_M, Floor, Spot};
 use crate::kind::{RegionKind, kind, may_be_car};
 use crate::naming::{Naming, letter};
+use crate::open::Open;
 use crate::region::{Regions, roomiest};
 use crate::remark::{Remark, RemarkKind};
 use crate::sketch::{Ground, Sketch, What};
@@ -95,17 +96,12 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
         let text = format!("cells of {} m are too coarse for doorways; a map of 0.05 to 0.1 m shows them", grid.resolution_m);
         remarks.push(Remark::new(RemarkKind::Coarse, None, text));
     }
-    let floor = Floor::of(grid, &mut remarks);
-    let fits = f64_to_f32(floor.body_of_cell_m());
-    let inside = Layer { width: floor.clear_m.width, values: floor.clear_m.values.iter().map(|m| *m >= fits).collect() };
-    let skeleton = skeleton(&inside, &floor.clear_m, floor.cell_m);
-    let narrow: Vec<Spot> = (0..height(&skeleton))
-        .flat_map(|row| (0..skeleton.width).map(move |column| (column, row)))
-        .filter(|(column, row)| skeleton.get(*column, *row) == Some(true))
-        .filter(|cell| throat::is_narrow(floor.clear_of(*cell)))
-        .map(|cell| floor.spot(cell))
-        .collect();
-    let throats = throat::openings(&floor, &narrow);
+    let mut floor = Floor::of(grid, &mut remarks);
+    let inside = fitting(&floor);
+    let throats = throat::openings(&floor, &narrow(&floor, &skeleton(&inside, &floor.clear_m, floor.cell_m)));
+    floor.close(&throats.iter().map(|throat| (throat.from, throat.to)).collect::<Vec<_>>());
+    let floor = floor;
+    let inside = fitting(&floor);
     let mut regions = Regions::cut(&floor, &inside, &throats);
     let kept = kept(grid, &floor, &mut regions, options)?;
     left_out(&floor, &regions, &kept, &mut remarks);
@@ -113,14 +109,21 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
     let cars: BTreeSet<usize> = elevators.keys().copied().collect();
     let kinds: BTreeMap<usize, RegionKind> = kept
         .iter()
-        .map(|region| (*region, if cars.contains(region) { RegionKind::Room } else { kind(&regions, *region) }))
+        .map(|region| (*region, if cars.contains(region) { RegionKind::Room } else { kind(&floor, &regions, *region) }))
         .collect();
+    let mut ways = inside;
+    for (slot, number) in ways.values.iter_mut().zip(&regions.of_cell.values) {
+        let region = (*number as usize).checked_sub(1);
+        *slot = region.and_then(|region| kinds.get(&region)) == Some(&RegionKind::Ways);
+    }
+    let skeleton = skeleton(&ways, &floor.clear_m, floor.cell_m);
     for region in kinds.keys().filter(|region| !cars.contains(region) && may_be_car(&floor, &regions, **region)) {
         let at = regions.all.get(*region).map(|region| roomiest(&floor, region));
         let text = "a small room with one door: is it an elevator? `--elevator X,Y` says so".to_owned();
         remarks.push(Remark::new(RemarkKind::Elevator, at, text));
     }
-    let ground = Ground { floor: &floor, regions: &regions, kinds: &kinds, cars: &cars, skeleton: &skeleton };
+    let open = Open::of(&floor, &ways);
+    let ground = Ground { floor: &floor, regions: &regions, kinds: &kinds, cars: &cars, skeleton: &skeleton, open: &open };
     let mut sketch = Sketch::of(&ground);
     one_piece(&floor, &regions, &elevators, &mut sketch, &mut remarks);
     let mut made = written(grid, &Naming::new(&floor, &regions, &sketch, &elevators));
@@ -133,9 +136,21 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
     Ok(made)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "a length of a few meters")]
-fn f64_to_f32(meters: f64) -> f32 {
-    meters as f32
+/// The cells on which the robot fits.
+fn fitting(floor: &Floor) -> Layer<bool> {
+    #[expect(clippy::cast_possible_truncation, reason = "a length of less than a meter")]
+    let least = floor.body_of_cell_m() as f32;
+    Layer { width: floor.clear_m.width, values: floor.clear_m.values.iter().map(|m| *m >= least).collect() }
+}
+
+/// The spots of a skeleton that may be in an opening.
+fn narrow(floor: &Floor, skeleton: &Layer<bool>) -> Vec<Spot> {
+    (0..height(skeleton))
+        .flat_map(|row| (0..skeleton.width).map(move |column| (column, row)))
+        .filter(|(column, row)| skeleton.get(*column, *row) == Some(true))
+        .filter(|cell| throat::is_narrow(floor.clear_of(*cell)))
+        .map(|cell| floor.spot(cell))
+        .collect()
 }
 
 fn world(grid: &Grid, floor: &Floor, spot: &Spot) -> Point {

@@ -35,10 +35,20 @@ impl Extent {
         self.rows = (self.rows.0.min(row), self.rows.1.max(row));
     }
 
+    fn sides(&self) -> [usize; 2] {
+        [self.columns, self.rows].map(|(first, last)| (last + 1).saturating_sub(first))
+    }
+
     /// The longer side, cells.
     pub(crate) fn longest(&self) -> usize {
-        let side = |(first, last): (usize, usize)| (last + 1).saturating_sub(first);
-        side(self.columns).max(side(self.rows))
+        let [wide, tall] = self.sides();
+        wide.max(tall)
+    }
+
+    /// The shorter side, cells.
+    pub(crate) fn shortest(&self) -> usize {
+        let [wide, tall] = self.sides();
+        wide.min(tall)
     }
 
     /// Whether it reaches the rim of a layer of this size.

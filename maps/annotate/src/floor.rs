@@ -6,7 +6,7 @@
 use socrates_maps::{DistanceField, Layer};
 use socrates_model::{Cell as Kind, Grid, Point};
 
-use crate::cells::{Cell, ROUND, SIDES, height, parts};
+use crate::cells::{Cell, Extent, ROUND, SIDES, height, parts};
 use crate::remark::{Remark, RemarkKind};
 use crate::things::Things;
 
@@ -22,6 +22,9 @@ const DUST_M2: f64 = 0.02;
 /// A thing that stands alone and is at most this long and wide does not part the floor into ways, m: a pillar, a chair.
 const THING_M: f64 = 1.0;
 
+/// A piece of wall is at most so thick and at least so long, m.
+const PIER_M: (f64, f64) = (0.35, 0.5);
+
 /// The floor of a map.
 pub(crate) struct Floor {
     /// Side of a map cell, m.
@@ -31,7 +34,9 @@ pub(crate) struct Floor {
     stride: usize,
     /// Distances on the map as it is: where edges and nodes may lie.
     raw: DistanceField,
-    /// Distances without dust and small things: how the floor hangs together. None where both are the same.
+    /// The map without dust and small things.
+    cleaned: Grid,
+    /// Distances on the cleaned map: how the floor hangs together. None where it is the map as it is.
     clean: Option<DistanceField>,
     /// The clean clearance of every working cell, m.
     pub(crate) clear_m: Layer<f32>,
@@ -57,6 +62,7 @@ impl Floor {
             cell_m: grid.resolution_m * stride as f64,
             stride: stride.max(1),
             raw,
+            cleaned: grid.clone(),
             clean: None,
             clear_m: Layer::filled(0, 0, 0.0),
             bare_m: Layer::filled(0, 0, 0.0),
@@ -69,18 +75,43 @@ impl Floor {
         if floor.drop_things(&mut cleaned, remarks) {
             floor.clean = Some(DistanceField::new(&cleaned));
         }
-        floor.clear_m = floor.sampled(grid, floor.clean.as_ref().unwrap_or(&floor.raw));
         floor.things = Things::of(&cleaned);
-        floor.bare_m = if floor.things.clear_away(&mut cleaned) {
-            floor.sampled(grid, &DistanceField::new(&cleaned))
-        } else {
-            floor.clear_m.clone()
-        };
+        floor.cleaned = cleaned;
+        floor.clear_m = floor.sampled(floor.clean.as_ref().unwrap_or(&floor.raw));
+        floor.bare_m = floor.clear_m.clone();
         floor
     }
 
+    /// Closes lines, such as those of doors, on the clean map; edges and nodes are not led by it.
+    pub(crate) fn close(&mut self, lines: &[(Spot, Spot)]) {
+        let mut closed = self.cleaned.clone();
+        for (from, to) in lines {
+            let along = (to - from).normalize() * self.map_cell_m;
+            let (start, end) = (from - along, to + along);
+            let steps = ((end - start).norm() / (0.25 * self.map_cell_m)).ceil().clamp(1.0, 1e5) as u32;
+            for step in 0..=steps {
+                let (px, py) = self.pixel(&(start + (end - start) * (f64::from(step) / f64::from(steps))));
+                let (column, row) = (px.max(0.0) as usize, py.max(0.0) as usize);
+                if column < closed.width
+                    && let Some(cell) = closed.cells.get_mut(row * closed.width + column)
+                {
+                    *cell = Kind::Occupied;
+                }
+            }
+        }
+        let field = DistanceField::new(&closed);
+        self.clear_m = self.sampled(&field);
+        self.clean = Some(field);
+        self.bare_m = if self.things.clear_away(&mut closed) {
+            self.sampled(&DistanceField::new(&closed))
+        } else {
+            self.clear_m.clone()
+        };
+    }
+
     /// A clearance at the middle of every working cell.
-    fn sampled(&self, grid: &Grid, field: &DistanceField) -> Layer<f32> {
+    fn sampled(&self, field: &DistanceField) -> Layer<f32> {
+        let grid = &self.cleaned;
         let (width, height) = (grid.width.div_ceil(self.stride), grid.height.div_ceil(self.stride));
         let mut layer = Layer::filled(width, height, 0.0_f32);
         for (row, line) in layer.values.chunks_exact_mut(width.max(1)).enumerate() {
@@ -130,8 +161,21 @@ impl Floor {
         let (numbers, found) = parts(&tight, &SIDES);
         let size = (grid.width, grid.height);
         let most = ((THING_M + 2.0 * BODY_M) / self.map_cell_m + 1e-6) as usize;
-        let small: Vec<bool> =
-            found.iter().map(|part| part.extent.longest() <= most && !part.extent.is_at_rim(size)).collect();
+        let mut blocked = vec![Extent::NONE; found.len()];
+        for (place, (number, cell)) in numbers.values.iter().zip(&grid.cells).enumerate() {
+            let own = (*number as usize).checked_sub(1).filter(|_| *cell != Kind::Free);
+            if let Some(extent) = own.and_then(|part| blocked.get_mut(part)) {
+                extent.add((place % grid.width, place / grid.width));
+            }
+        }
+        let cells = |meters: f64| (meters / self.map_cell_m + 1e-6) as usize;
+        // A piece of wall between two doors is none.
+        let pier = |extent: &Extent| extent.shortest() <= cells(PIER_M.0) && extent.longest() >= cells(PIER_M.1);
+        let small: Vec<bool> = found
+            .iter()
+            .zip(&blocked)
+            .map(|(part, blocked)| part.extent.longest() <= most && !part.extent.is_at_rim(size) && !pier(blocked))
+            .collect();
         let things = small.iter().filter(|small| **small).count();
         if things == 0 {
             return false;
@@ -199,11 +243,18 @@ impl Floor {
 
     /// Least raw clearance along the straight line between two spots, m, looked at twice a cell.
     pub(crate) fn line_m(&self, from: &Spot, to: &Spot) -> f64 {
+        self.least_on_line(from, to, |spot| self.raw_m(spot))
+    }
+
+    /// Least clean clearance along the straight line between two spots, m; 0 across a closed door.
+    pub(crate) fn clean_line_m(&self, from: &Spot, to: &Spot) -> f64 {
+        self.least_on_line(from, to, |spot| self.clean_m(spot))
+    }
+
+    fn least_on_line(&self, from: &Spot, to: &Spot, clearance: impl Fn(&Spot) -> f64) -> f64 {
         let along = to - from;
         let steps = (along.norm() / (0.5 * self.map_cell_m.max(0.02))).ceil().clamp(1.0, 1e5) as u32;
-        (0..=steps)
-            .map(|step| self.raw_m(&(from + along * (f64::from(step) / f64::from(steps)))))
-            .fold(f64::INFINITY, f64::min)
+        (0..=steps).map(|step| clearance(&(from + along * (f64::from(step) / f64::from(steps))))).fold(f64::INFINITY, f64::min)
     }
 }
 

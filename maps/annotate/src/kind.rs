@@ -1,8 +1,10 @@
 //! What a region is: a room, or floor along which ways lead.
 
-use crate::floor::Floor;
+use crate::floor::{Floor, Spot};
+use crate::middle::middle;
 use crate::region::{Region, Regions};
 use crate::throat::Opening;
+use crate::way::{LEAST_M, is_straight};
 
 /// Largest floor of a room, m²; what is larger has ways of its own.
 const ROOM_MOST_M2: f64 = 130.0;
@@ -33,19 +35,27 @@ pub(crate) fn aspect(region: &Region) -> f64 {
 }
 
 /// The kind of a region.
-pub(crate) fn kind(regions: &Regions, at: usize) -> RegionKind {
+pub(crate) fn kind(floor: &Floor, regions: &Regions, at: usize) -> RegionKind {
     let Some(region) = regions.all.get(at) else { return RegionKind::Ways };
     let doors = regions.passages_of(at).count();
     let slim = aspect(region);
     let room = doors > 0
         && region.area_m2 <= ROOM_MOST_M2
-        && if doors >= CORRIDOR_DOORS { slim < 0.5 * ROOM_ASPECT } else { slim < ROOM_ASPECT };
+        && if doors >= CORRIDOR_DOORS { slim < 0.5 * ROOM_ASPECT } else { slim < ROOM_ASPECT }
+        && (doors < CORRIDOR_DOORS || is_overlooked(floor, regions, at));
     let open = regions.passages_of(at).any(|(_, passage)| passage.throat.opening == Opening::Wide);
     match (room, open) {
         (true, false) => RegionKind::Room,
         (true, true) => RegionKind::Bay,
         (false, _) => RegionKind::Ways,
     }
+}
+
+/// Whether somebody in the middle of a region sees all its doors: what is round a corner is another place.
+fn is_overlooked(floor: &Floor, regions: &Regions, at: usize) -> bool {
+    let doors: Vec<Spot> = regions.passages_of(at).map(|(_, passage)| passage.throat.middle()).collect();
+    let middle = middle(floor, regions, at, &doors);
+    doors.iter().all(|door| is_straight(floor, &middle, door, LEAST_M))
 }
 
 /// Whether a region may be the car of an elevator: small, about square, one door.

@@ -11,6 +11,8 @@ use crate::floor::{Floor, Spot};
 const SALIENT_M: f64 = 0.8;
 /// See [`SALIENT_M`].
 const SALIENT_SHARE: f64 = 0.4;
+/// A way off open floor that ends is at least so long, m.
+const POCKET_M: f64 = 2.5;
 /// Junctions nearer to each other than this are one, m, or than this share of their clearance.
 const ONE_JUNCTION_M: f64 = 0.9;
 /// See [`ONE_JUNCTION_M`].
@@ -26,8 +28,18 @@ const PASSES: usize = 60;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot {
     pub(crate) at: Spot,
-    /// The passage at which it lies, where it is a door.
-    pub(crate) door: Option<usize>,
+    pub(crate) held: Option<Held>,
+}
+
+/// Why a knot stays where it is, whatever its branches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// It is a door: the number of its passage.
+    Door(usize),
+    /// It lies at the rim of open floor.
+    Rim,
+    /// It is a place on open floor.
+    Open,
 }
 
 /// A way between two knots.
@@ -84,8 +96,8 @@ impl Network {
         self.knots.get(knot).map_or_else(Spot::origin, |knot| knot.at)
     }
 
-    fn is_door(&self, knot: usize) -> bool {
-        self.knots.get(knot).is_some_and(|knot| knot.door.is_some())
+    fn is_held(&self, knot: usize) -> bool {
+        self.knots.get(knot).is_some_and(|knot| knot.held.is_some())
     }
 
     /// Takes back tips that run into a corner of the floor: their clearance falls as fast as they go on, so they lead nowhere.
@@ -95,8 +107,8 @@ impl Network {
             for end in [0, 1] {
                 let [first, last] = branch.ends;
                 let tip = if end == 0 { first } else { last };
-                let is_door = self.knots.get(tip).is_some_and(|knot| knot.door.is_some());
-                if degrees.get(tip) != Some(&1) || is_door {
+                let held = self.knots.get(tip).is_some_and(|knot| knot.held.is_some());
+                if degrees.get(tip) != Some(&1) || held {
                     continue;
                 }
                 if end == 1 {
@@ -158,22 +170,51 @@ impl Network {
 
     /// How far a tip reaches beyond what it has to, m; none where both ends of a branch lead on, or a door is at its tip.
     fn salience(&self, floor: &Floor, branch: &Branch, degrees: &[usize]) -> Option<f64> {
-        let tip = |end: usize| degrees.get(end) == Some(&1) && !self.is_door(end);
+        let tip = |end: usize| degrees.get(end) == Some(&1) && !self.is_held(end);
         let [a, b] = branch.ends;
         let (junction, tip) = match (tip(a), tip(b)) {
             (true, false) => (b, a),
             (false, true) => (a, b),
             (true, true) | (false, false) => return None,
         };
-        if self.is_door(junction) {
-            return None;
+        match self.knots.get(junction).and_then(|knot| knot.held) {
+            Some(Held::Rim) => return Some(branch.length_m() - POCKET_M),
+            Some(Held::Door(_) | Held::Open) => return None,
+            None => {}
         }
         let (wide, narrow) = (floor.clean_m(&self.at(junction)), floor.clean_m(&self.at(tip)));
         Some(branch.length_m() + narrow - wide - SALIENT_M - SALIENT_SHARE * wide)
     }
 
+    /// Adds a knot.
+    pub(crate) fn add(&mut self, at: Spot, held: Option<Held>) -> usize {
+        self.knots.push(Knot { at, held });
+        self.knots.len() - 1
+    }
+
+    /// A knot at a place of a branch: one that is near along it, or a new one that parts it.
+    pub(crate) fn parted(&mut self, branch: usize, place: usize) -> Option<usize> {
+        let known = self.branches.get(branch)?;
+        let (before, after) = (known.path.get(..=place)?, known.path.get(place..)?);
+        let [first, last] = known.ends;
+        let near = |knot: usize, piece: &[Spot]| {
+            let door = matches!(self.knots.get(knot).and_then(|knot| knot.held), Some(Held::Door(_)));
+            (!door && length_m(piece) <= ONE_JUNCTION_M).then_some(knot)
+        };
+        let (to_first, to_last) = (near(first, before), near(last, after));
+        if let Some(knot) = if length_m(before) <= length_m(after) { to_first.or(to_last) } else { to_last.or(to_first) } {
+            return Some(knot);
+        }
+        let (before, after) = (before.to_vec(), after.to_vec());
+        let at = *after.first()?;
+        let knot = self.add(at, None);
+        *self.branches.get_mut(branch)? = Branch { ends: [first, knot], path: before };
+        self.branches.push(Branch { ends: [knot, last], path: after });
+        Some(knot)
+    }
+
     /// Joins the two branches at knots that have no other.
-    fn join_through(&mut self) {
+    pub(crate) fn join_through(&mut self) {
         let degrees = self.degrees();
         let mut at_knot: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (at, branch) in self.branches.iter().enumerate() {
@@ -185,7 +226,7 @@ impl Network {
         // Where a branch went that was joined to another.
         let mut moved: Vec<usize> = (0..slots.len()).collect();
         for (knot, degree) in degrees.iter().enumerate() {
-            if *degree != 2 || self.knots.get(knot).is_some_and(|knot| knot.door.is_some()) {
+            if *degree != 2 || self.knots.get(knot).is_some_and(|knot| knot.held.is_some()) {
                 continue;
             }
             let mut both = at_knot.get(&knot).into_iter().flatten().map(|at| found(&moved, *at));
@@ -220,7 +261,7 @@ impl Network {
         let mut short: Vec<(f64, usize)> = Vec::new();
         for (at, branch) in self.branches.iter().enumerate() {
             let [a, b] = branch.ends;
-            let junction = |end: usize| degrees.get(end).is_some_and(|degree| *degree > 2) && !self.is_door(end);
+            let junction = |end: usize| degrees.get(end).is_some_and(|degree| *degree > 2) && !self.is_held(end);
             if a == b || !junction(a) || !junction(b) {
                 continue;
             }
@@ -274,12 +315,12 @@ impl Network {
             .zip(&degrees)
             .map(|(knot, degree)| {
                 let own = number;
-                number += usize::from(*degree > 0 || knot.door.is_some());
+                number += usize::from(*degree > 0 || knot.held.is_some());
                 own
             })
             .collect();
         let mut degrees = degrees.into_iter();
-        self.knots.retain(|knot| degrees.next() != Some(0) || knot.door.is_some());
+        self.knots.retain(|knot| degrees.next() != Some(0) || knot.held.is_some());
         for branch in &mut self.branches {
             branch.ends = branch.ends.map(|end| places.get(end).copied().unwrap_or(end));
         }
@@ -380,7 +421,7 @@ impl Tracer<'_> {
             self.floor.clear_of(*a).total_cmp(&self.floor.clear_of(*b)).then(b.cmp(a))
         });
         let at = self.floor.spot(roomiest.unwrap_or(first));
-        self.made.knots.push(Knot { at, door: None });
+        self.made.knots.push(Knot { at, held: None });
     }
 
     /// The branches that begin at cells of knots.

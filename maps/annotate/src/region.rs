@@ -11,7 +11,7 @@ use crate::throat::Throat;
 /// Pieces of floor smaller than this between doors are no places: one of the doors is none, m². A car of 1.1 by 1.4 m is one.
 const LEAST_M2: f64 = 1.4;
 /// The floor on a side of a door is looked for so far beyond it, m.
-const BEYOND_M: [f64; 4] = [0.15, 0.3, 0.45, 0.6];
+const BEYOND_M: [f64; 6] = [0.0, 0.15, 0.3, 0.45, 0.6, 0.75];
 /// Share of the picture's rim along which the floor round a building lies.
 const RIM_SHARE: f64 = 0.25;
 
@@ -58,15 +58,9 @@ impl Regions {
         self.passages.iter().enumerate().filter(move |(_, passage)| passage.sides.contains(&region))
     }
 
-    /// Cuts the floor at throats.
+    /// The pieces of a floor on which throats are closed.
     pub(crate) fn cut(floor: &Floor, inside: &Layer<bool>, throats: &[Throat]) -> Self {
-        let mut open = inside.clone();
-        for throat in throats {
-            for cell in line(floor, throat) {
-                open.set(cell.0, cell.1, false);
-            }
-        }
-        let (mut of_cell, found) = parts(&open, &SIDES);
+        let (mut of_cell, found) = parts(inside, &SIDES);
         let narrow = |throat: &&Throat| throat.width_m < 2.0 * BODY_M - 0.02;
         let (gaps, wide): (Vec<Throat>, Vec<Throat>) = throats.iter().partition(narrow);
         let side = |throat: &Throat, behind: bool, of_cell: &Layer<u32>| {

@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use socrates_maps::Layer;
 use socrates_model::Vector;
 
-use crate::cells::{Cell, height};
 use crate::floor::{Floor, Spot};
 use crate::kind::RegionKind;
-use crate::network::{Branch, Network, length_m};
+use crate::middle::middle;
+use crate::network::{Branch, Held, Network, length_m};
+use crate::open::Open;
 use crate::region::Regions;
 use crate::throat::Opening;
 use crate::way::{KEPT_M, LEAST_M, is_straight, least_m, simplified, way};
@@ -19,14 +20,10 @@ const EDGE_MOST_M: f64 = 4.6;
 const NARROW_LEAST_M: f64 = 2.4;
 /// A way with less clean clearance than this on both sides is narrow, m: two people of 0.6 m do not pass with ease.
 pub(crate) const NARROW_M: f64 = 0.8;
-/// A tip of the network belongs to a door this near to it, m, beyond half its depth.
-const ANCHOR_M: f64 = 0.6;
+/// So many places of ways are tried, the nearest first, before a door is led round something.
+const SEEN_MOST: usize = 400;
 /// Interior corners nearer to each other than this are one, m.
 const ONE_CORNER_M: f64 = 1.3;
-/// The middle of a room is looked for on a lattice of this step, m.
-const LATTICE_M: f64 = 0.25;
-/// Clearance at the middle of a room beyond which more is no better, m.
-const ROOMY_M: f64 = 1.0;
 
 /// What a place is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,6 +67,8 @@ pub(crate) struct Ground<'a> {
     /// Regions that are cars of elevators.
     pub(crate) cars: &'a BTreeSet<usize>,
     pub(crate) skeleton: &'a Layer<bool>,
+    /// Open floor among them.
+    pub(crate) open: &'a Open,
 }
 
 impl Sketch {
@@ -119,7 +118,7 @@ impl Sketch {
             .passages_of(region)
             .filter_map(|(number, _)| Some((number, *doors.get(&number)?)))
             .collect();
-        let middle = middle(ground, region, &own.iter().map(|(_, place)| self.at(*place)).collect::<Vec<_>>());
+        let middle = middle(ground.floor, ground.regions, region, &own.iter().map(|(_, place)| self.at(*place)).collect::<Vec<_>>());
         let is_car = ground.cars.contains(&region);
         let what = match ground.kinds.get(&region) {
             _ if is_car => What::Car(region),
@@ -180,24 +179,34 @@ impl Sketch {
     /// The network of the regions that are no rooms.
     fn network(&mut self, ground: &Ground<'_>, doors: &BTreeMap<usize, usize>) {
         let mut on = ground.skeleton.clone();
-        let is_way = |cell: Cell| {
-            let region = ground.regions.of(cell);
-            region.is_some_and(|region| ground.kinds.get(&region) == Some(&RegionKind::Ways))
-        };
-        for row in 0..height(&on) {
-            for column in 0..on.width {
-                if on.get(column, row) == Some(true) && !is_way((column, row)) {
-                    on.set(column, row, false);
+        for (slot, open) in on.values.iter_mut().zip(&ground.open.on.values) {
+            *slot = *slot && !open;
+        }
+        let mut network = Network::traced(ground.floor, &on);
+        for knot in &mut network.knots {
+            if ground.open.is_near(ground.floor, &knot.at) {
+                knot.held = Some(Held::Rim);
+            }
+        }
+        network.trim(ground.floor);
+        network.clear(ground.floor);
+        open_floor(ground, &mut network);
+        for number in doors.keys() {
+            let Some(passage) = ground.regions.passages.get(*number) else { continue };
+            let mut knot = None;
+            for (behind, region) in [(false, passage.sides[0]), (true, passage.sides[1])] {
+                if ground.kinds.get(&region) == Some(&RegionKind::Ways) {
+                    let knot = *knot.get_or_insert_with(|| {
+                        network.add(free_middle(ground.floor, &passage.throat), Some(Held::Door(*number)))
+                    });
+                    attach(ground, &mut network, knot, (region, passage.throat.beyond(behind, 0.3)));
                 }
             }
         }
-        let mut network = Network::traced(ground.floor, &on);
-        let anchored = anchor(ground, &mut network);
-        network.trim(ground.floor);
-        network.clear(ground.floor);
+        network.join_through();
         let mut placed: BTreeMap<usize, usize> = BTreeMap::new();
         for (number, knot) in network.knots.iter().enumerate() {
-            let at_door = knot.door.and_then(|passage| doors.get(&passage).copied());
+            let at_door = if let Some(Held::Door(passage)) = knot.held { doors.get(&passage).copied() } else { None };
             let place = match at_door {
                 Some(door) => door,
                 None => self.add(knot.at, What::Way),
@@ -212,7 +221,6 @@ impl Sketch {
                 self.branch(ground.floor, branch, (from, to), again);
             }
         }
-        self.loose_doors(ground, doors, &anchored);
     }
 
     /// Places along a branch: where it bends, and where it is long or narrow.
@@ -271,48 +279,6 @@ impl Sketch {
         }
         last
     }
-
-    /// Joins doors that no tip of the network came to with the nearest place before them.
-    fn loose_doors(
-        &mut self,
-        ground: &Ground<'_>,
-        doors: &BTreeMap<usize, usize>,
-        anchored: &BTreeSet<(usize, bool)>,
-    ) {
-        for (number, door) in doors {
-            let Some(passage) = ground.regions.passages.get(*number) else { continue };
-            for (behind, region) in [(false, passage.sides[0]), (true, passage.sides[1])] {
-                let ways = ground.kinds.get(&region) == Some(&RegionKind::Ways);
-                if !ways || anchored.contains(&(*number, behind)) {
-                    continue;
-                }
-                let before = passage.throat.beyond(behind, 0.35);
-                let mut near: Vec<(f64, usize)> = self
-                    .places
-                    .iter()
-                    .enumerate()
-                    .filter(|(at, place)| {
-                        at != door && ground.regions.of(ground.floor.cell(&place.at)) == Some(region)
-                    })
-                    .map(|(at, place)| ((place.at - before).norm(), at))
-                    .collect();
-                near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                match near.iter().find(|(_, at)| is_straight(ground.floor, &self.at(*at), &self.at(*door), LEAST_M)) {
-                    Some((_, at)) => self.join(*at, *door),
-                    None => {
-                        if let Some((_, at)) = near.first() {
-                            self.lead(ground.floor, *door, *at, What::Way);
-                        } else {
-                            // A piece of floor without a way of its own.
-                            let at = middle(ground, region, &[before]);
-                            let place = self.add(at, What::Way);
-                            self.lead(ground.floor, *door, place, What::Way);
-                        }
-                    }
-                }
-            }
-        }
-    }
 }
 
 /// Corners without those that are one with another; the first and the last stay.
@@ -343,7 +309,7 @@ fn spread(floor: &Floor, corners: &[Spot]) -> Vec<Spot> {
 }
 
 /// The middle of an opening, or the freest place on its line where something lies in it.
-fn free_middle(floor: &Floor, throat: &crate::throat::Throat) -> Spot {
+pub(crate) fn free_middle(floor: &Floor, throat: &crate::throat::Throat) -> Spot {
     let middle = throat.middle();
     if floor.raw_m(&middle) >= LEAST_M {
         return middle;
@@ -352,60 +318,74 @@ fn free_middle(floor: &Floor, throat: &crate::throat::Throat) -> Spot {
     spots.max_by(|a, b| floor.raw_m(a).total_cmp(&floor.raw_m(b))).unwrap_or(middle)
 }
 
-/// Names the tips of the network that lie at doors; gives the passages with the sides, before or behind, from which they were reached.
-fn anchor(ground: &Ground<'_>, network: &mut Network) -> BTreeSet<(usize, bool)> {
-    let mut degrees = vec![0_usize; network.knots.len()];
-    for end in network.branches.iter().flat_map(|branch| branch.ends) {
-        if let Some(degree) = degrees.get_mut(end) {
-            *degree += 1;
+/// Adds the places on open floor, and leads what ends at its rim to them.
+fn open_floor(ground: &Ground<'_>, network: &mut Network) {
+    let floor = ground.floor;
+    let mut places: Vec<usize> = Vec::new();
+    for lattice in &ground.open.lattices {
+        let knots: Vec<usize> = lattice.spots.iter().map(|spot| network.add(*spot, Some(Held::Open))).collect();
+        for way in &lattice.ways {
+            let [Some(from), Some(to)] = way.map(|end| knots.get(end).copied()) else { continue };
+            let path = [from, to].iter().filter_map(|knot| network.knots.get(*knot)).map(|knot| knot.at).collect();
+            network.branches.push(Branch { ends: [from, to], path });
+        }
+        places.extend(knots);
+    }
+    let rims: Vec<usize> = (0..network.knots.len())
+        .filter(|knot| network.knots.get(*knot).is_some_and(|knot| knot.held == Some(Held::Rim)))
+        .collect();
+    for rim in rims {
+        let Some(knot) = network.knots.get_mut(rim) else { continue };
+        knot.held = None;
+        let at = knot.at;
+        let spot = |place: &usize| network.knots.get(*place).map_or(at, |knot| knot.at);
+        let mut near: Vec<usize> = places.clone();
+        near.sort_by(|a, b| (spot(a) - at).norm().total_cmp(&(spot(b) - at).norm()).then(a.cmp(b)));
+        let seen = near.iter().find(|place| is_straight(floor, &at, &spot(place), LEAST_M));
+        let Some(place) = seen.or_else(|| near.first()).copied() else { continue };
+        let to = spot(&place);
+        let path = if is_straight(floor, &at, &to, LEAST_M) { Some(vec![at, to]) } else { way(floor, &at, &to) };
+        if let Some(path) = path {
+            network.branches.push(Branch { ends: [rim, place], path });
         }
     }
-    let mut near: Vec<(f64, usize, usize, bool)> = Vec::new();
-    for (number, knot) in network.knots.iter().enumerate() {
-        let Some(region) = ground.regions.of(ground.floor.cell(&knot.at)) else { continue };
-        if degrees.get(number) != Some(&1) {
-            continue;
-        }
-        for (passage, known) in ground.regions.passages_of(region) {
-            let away = knot.at - known.throat.middle();
-            let (off, behind) = (away.norm(), away.dot(&known.throat.ahead) < 0.0);
-            if off <= 0.5 * known.throat.depth_m() + ANCHOR_M {
-                near.push((off, number, passage, behind));
-            }
-        }
-    }
-    near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let mut anchored = BTreeSet::new();
-    for (_, number, passage, behind) in near {
-        let Some(knot) = network.knots.get_mut(number).filter(|knot| knot.door.is_none()) else { continue };
-        if anchored.insert((passage, behind)) {
-            knot.door = Some(passage);
-        }
-    }
-    anchored
 }
 
-/// Where somebody stands who is in the middle of a region: roomy, near the middle of its floor, in sight of its doors.
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a map")]
-fn middle(ground: &Ground<'_>, region: usize, doors: &[Spot]) -> Spot {
-    let Some(known) = ground.regions.all.get(region) else { return Spot::origin() };
-    let every = ((LATTICE_M / ground.floor.cell_m) as usize).max(1);
-    let cells: Vec<Cell> = (known.extent.rows.0..=known.extent.rows.1)
-        .step_by(every)
-        .flat_map(|row| (known.extent.columns.0..=known.extent.columns.1).step_by(every).map(move |column| (column, row)))
-        .chain([known.roomiest])
-        .filter(|cell| ground.regions.of(*cell) == Some(region))
-        .collect();
-    let count = cells.len().max(1) as f64;
-    let sum = cells.iter().map(|cell| ground.floor.spot(*cell).coords).fold(Vector::zeros(), |a, b| a + b);
-    let center = Spot::from(sum / count);
-    let score = |spot: &Spot| {
-        let seen = doors.iter().filter(|door| is_straight(ground.floor, spot, door, LEAST_M)).count();
-        let clear_m = ground.floor.raw_m(spot);
-        let stands = if clear_m >= LEAST_M { 0.0 } else { -10.0 };
-        stands + 2.0 * clear_m.min(ROOMY_M) + 0.8 * seen as f64 - 0.2 * (spot - center).norm()
+/// Leads a door to the nearest way of the region before it.
+fn attach(ground: &Ground<'_>, network: &mut Network, door: usize, (region, before): (usize, Spot)) {
+    let Some(at) = network.knots.get(door).map(|knot| knot.at) else { return };
+    let floor = ground.floor;
+    let mut near: Vec<(f64, usize, usize)> = Vec::new();
+    for (number, branch) in network.branches.iter().enumerate() {
+        if branch.ends.contains(&door) {
+            continue;
+        }
+        let own = |spot: &Spot| ground.regions.of(floor.cell(spot)) == Some(region);
+        let spots = branch.path.iter().enumerate().filter(|(_, spot)| own(spot));
+        near.extend(spots.map(|(place, spot)| ((spot - before).norm(), number, place)));
+    }
+    near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let spot_of = |network: &Network, (_, branch, place): &(f64, usize, usize)| {
+        network.branches.get(*branch).and_then(|branch| branch.path.get(*place)).copied()
     };
-    let spots = cells.iter().map(|cell| ground.floor.spot(*cell));
-    let best = spots.map(|spot| (score(&spot), spot)).reduce(|best, next| if next.0 > best.0 { next } else { best });
-    best.map_or_else(|| crate::region::roomiest(ground.floor, known), |(_, spot)| spot)
+    let straight = |candidate: &&(f64, usize, usize)| {
+        let spot = spot_of(network, candidate);
+        // On this side of the door, which is closed on the clean map.
+        spot.is_some_and(|spot| floor.clean_line_m(&before, &spot) > 0.0 && is_straight(floor, &at, &spot, LEAST_M))
+    };
+    let seen = near.iter().take(SEEN_MOST).find(straight).or_else(|| near.first()).copied();
+    let knot = match seen {
+        Some((_, branch, place)) => network.parted(branch, place),
+        None => {
+            // A piece of floor without a way of its own.
+            let middle = middle(floor, ground.regions, region, &[before]);
+            let known = network.knots.iter().position(|knot| knot.held.is_none() && knot.at == middle);
+            Some(known.unwrap_or_else(|| network.add(middle, None)))
+        }
+    };
+    let Some((knot, to)) = knot.and_then(|knot| Some((knot, network.knots.get(knot)?.at))) else { return };
+    let path = if is_straight(floor, &at, &to, LEAST_M) { Some(vec![at, to]) } else { way(floor, &at, &to) };
+    if let Some(path) = path {
+        network.branches.push(Branch { ends: [door, knot], path });
+    }
 }

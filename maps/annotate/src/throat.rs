@@ -28,8 +28,9 @@ const WIDER_M: f64 = 0.3;
 const SHOULDER_M: f64 = 0.2;
 /// A wall of a door goes on for at least this beside the opening, m, on one of its faces.
 const TONGUE_M: f64 = 0.45;
-/// The wall behind a jamb is measured so far from it, m: a wall has one thickness, a corner ever more.
-const OUTWARD_M: [f64; 2] = [0.12, 0.3];
+/// The wall behind a jamb is measured so far from it, m: a wall in line with the opening has one thickness, a corner ever more, and
+/// a wall askew is left. How thick it may be there, m: a little farther on another wall may meet it.
+const OUTWARD_M: [(f64, f64); 3] = [(0.12, THIN_M), (0.25, THIN_M), (0.5, f64::INFINITY)];
 /// Shoulders are measured up to so far, m.
 const BESIDE_M: f64 = 1.2;
 /// Step along and across a throat, m.
@@ -119,7 +120,10 @@ impl Throat {
         if most < SHOULDER_M {
             return Jamb::Flush;
         }
-        let thin = OUTWARD_M.iter().all(|off| thickness_m(floor, &(at + out * *off), &self.ahead) <= THIN_M);
+        let thin = OUTWARD_M.iter().all(|(off_m, most_m)| {
+            let thick_m = thickness_m(floor, &(at + out * *off_m), &self.ahead);
+            thick_m > 0.0 && thick_m <= *most_m
+        });
         match (thin, least >= SHOULDER_M) {
             (true, _) => Jamb::End { tongue_m: least },
             (false, false) => Jamb::Step,
@@ -226,7 +230,7 @@ fn thickness_m(floor: &Floor, at: &Spot, ahead: &Vector) -> f64 {
         let solid = |step: &u32| floor.clean_m(&(at + ahead * (way * f64::from(*step) * WALL_M))) < WALL_M;
         f64::from((1..=40).take_while(solid).last().unwrap_or(0)) * WALL_M
     };
-    one(1.0) + one(-1.0)
+    if floor.clean_m(at) < WALL_M { one(1.0) + one(-1.0) } else { 0.0 }
 }
 
 /// How far it is to the wall, m, if at most so far.

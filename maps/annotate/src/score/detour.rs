@@ -9,7 +9,7 @@ use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{Location, Point};
 
 /// A graph is entered this near to a place at most, m.
-const ENTER_M: f64 = 4.0;
+const ENTER_M: f64 = 8.0;
 /// Ways shorter than this are not compared, m: their ends are as far apart as places match.
 const LEAST_M: f64 = 4.0;
 
