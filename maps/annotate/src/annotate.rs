@@ -10,14 +10,14 @@ use socrates_model::{
 
 use crate::cells::height;
 use crate::floor::{BODY_M, Floor, Spot};
-use crate::kind::{RegionKind, kind, may_be_car};
+use crate::kind::{RegionKind, is_bay, kind, may_be_car};
 use crate::naming::{Naming, letter};
 use crate::open::Open;
 use crate::region::{Regions, roomiest};
 use crate::remark::{Remark, RemarkKind};
 use crate::sketch::{Ground, Sketch, What};
 use crate::thin::skeleton;
-use crate::throat;
+use crate::throat::{self, Opening, Throat};
 
 /// Cells coarser than this show no doors, m.
 const COARSE_M: f64 = 0.25;
@@ -98,8 +98,11 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
     }
     let mut floor = Floor::of(grid, &mut remarks);
     let inside = fitting(&floor);
-    let throats = throat::openings(&floor, &narrow(&floor, &skeleton(&inside, &floor.clear_m, floor.cell_m)));
-    floor.close(&throats.iter().map(|throat| (throat.from, throat.to)).collect::<Vec<_>>());
+    let thin = skeleton(&inside, &floor.clear_m, floor.cell_m);
+    let mut throats = throat::openings(&floor, &spots(&floor, &thin, throat::is_narrow));
+    let wide = spots(&floor, &thin, throat::is_in_mouth);
+    throats.extend(mouths(&mut floor, &throats, &wide));
+    floor.close(&lines(&throats));
     let floor = floor;
     let inside = fitting(&floor);
     let mut regions = Regions::cut(&floor, &inside, &throats);
@@ -143,14 +146,32 @@ fn fitting(floor: &Floor) -> Layer<bool> {
     Layer { width: floor.clear_m.width, values: floor.clear_m.values.iter().map(|m| *m >= least).collect() }
 }
 
-/// The spots of a skeleton that may be in an opening.
-fn narrow(floor: &Floor, skeleton: &Layer<bool>) -> Vec<Spot> {
+/// The spots of a skeleton whose clearance is wanted.
+fn spots(floor: &Floor, skeleton: &Layer<bool>, wanted: impl Fn(f64) -> bool) -> Vec<Spot> {
     (0..height(skeleton))
         .flat_map(|row| (0..skeleton.width).map(move |column| (column, row)))
         .filter(|(column, row)| skeleton.get(*column, *row) == Some(true))
-        .filter(|cell| throat::is_narrow(floor.clear_of(*cell)))
+        .filter(|cell| wanted(floor.clear_of(*cell)))
         .map(|cell| floor.spot(cell))
         .collect()
+}
+
+fn lines(throats: &[Throat]) -> Vec<(Spot, Spot)> {
+    throats.iter().map(|throat| (throat.from, throat.to)).collect()
+}
+
+/// The mouths of bays beside the openings that are known: those behind which the floor, closed on trial, is compact.
+fn mouths(floor: &mut Floor, known: &[Throat], spots: &[Spot]) -> Vec<Throat> {
+    let mut found = throat::mouths(floor, spots);
+    found.retain(|mouth| known.iter().all(|throat| !throat.meets(mouth)));
+    if found.is_empty() {
+        return found;
+    }
+    let all: Vec<Throat> = known.iter().chain(&found).copied().collect();
+    floor.close(&lines(&all));
+    let regions = Regions::cut(floor, &fitting(floor), &all);
+    let bays = regions.passages.iter().filter(|passage| matches!(passage.throat.opening, Opening::Mouth(_)));
+    bays.filter(|passage| is_bay(floor, &regions, passage)).map(|passage| passage.throat).collect()
 }
 
 fn world(grid: &Grid, floor: &Floor, spot: &Spot) -> Point {
@@ -383,7 +404,7 @@ fn one_piece(
 /// Says which doors are doubtful, which gaps are too narrow, and whether the map is one floor.
 fn doubts(floor: &Floor, regions: &Regions, made: &Annotation, remarks: &mut Vec<Remark>) {
     let doubtful =
-        regions.passages.iter().filter(|passage| passage.throat.opening == throat::Opening::Door && passage.throat.confidence() < DOUBTFUL);
+        regions.passages.iter().filter(|passage| passage.throat.opening == Opening::Door && passage.throat.confidence() < DOUBTFUL);
     for passage in doubtful.take(NAMED_MOST) {
         let text = format!("an opening of {:.2} m is taken for a doorway with little confidence", passage.throat.width_m);
         remarks.push(Remark::new(RemarkKind::Doubtful, Some(passage.throat.middle()), text));

@@ -78,7 +78,12 @@ impl Floor {
         floor.things = Things::of(&cleaned);
         floor.cleaned = cleaned;
         floor.clear_m = floor.sampled(floor.clean.as_ref().unwrap_or(&floor.raw));
-        floor.bare_m = floor.clear_m.clone();
+        let mut bare = floor.cleaned.clone();
+        floor.bare_m = if floor.things.clear_away(&mut bare) {
+            floor.sampled(&DistanceField::new(&bare))
+        } else {
+            floor.clear_m.clone()
+        };
         floor
     }
 
@@ -218,6 +223,12 @@ impl Floor {
     pub(crate) fn clean_m(&self, spot: &Spot) -> f64 {
         let (px, py) = self.pixel(spot);
         self.clean.as_ref().unwrap_or(&self.raw).clearance_at_pixel(px, py)
+    }
+
+    /// Clearance without free-standing furniture, m; that of the working cell.
+    pub(crate) fn bare_at(&self, spot: &Spot) -> f64 {
+        let (column, row) = self.cell(spot);
+        f64::from(self.bare_m.get(column, row).unwrap_or(0.0))
     }
 
     /// The clean clearance of a working cell, m; 0 outside.

@@ -2,7 +2,7 @@
 
 use crate::floor::{Floor, Spot};
 use crate::middle::middle;
-use crate::region::{Region, Regions};
+use crate::region::{Passage, Region, Regions};
 use crate::throat::Opening;
 use crate::way::{LEAST_M, is_straight};
 
@@ -10,6 +10,10 @@ use crate::way::{LEAST_M, is_straight};
 const ROOM_MOST_M2: f64 = 130.0;
 /// How many times as long as wide a room is at most.
 const ROOM_ASPECT: f64 = 3.6;
+/// How many times as long as wide a bay is at most.
+const BAY_ASPECT: f64 = 2.2;
+/// Least floor of a bay, m².
+const BAY_LEAST_M2: f64 = 6.0;
 /// Doors from which on a slim region is a corridor.
 const CORRIDOR_DOORS: usize = 3;
 /// Sides of an elevator car, m: ADA 2010 §407.4 asks for 1.7 by 1.3 m, cars for beds have 1.8 by 2.7 m.
@@ -43,12 +47,24 @@ pub(crate) fn kind(floor: &Floor, regions: &Regions, at: usize) -> RegionKind {
         && region.area_m2 <= ROOM_MOST_M2
         && if doors >= CORRIDOR_DOORS { slim < 0.5 * ROOM_ASPECT } else { slim < ROOM_ASPECT }
         && (doors < CORRIDOR_DOORS || is_overlooked(floor, regions, at));
-    let open = regions.passages_of(at).any(|(_, passage)| passage.throat.opening == Opening::Wide);
+    let open = regions.passages_of(at).any(|(_, passage)| passage.throat.opening != Opening::Door);
     match (room, open) {
         (true, false) => RegionKind::Room,
         (true, true) => RegionKind::Bay,
         (false, _) => RegionKind::Ways,
     }
+}
+
+/// Whether a mouth leads from a way to a bay, and not to a way that goes on: its region is compact.
+pub(crate) fn is_bay(floor: &Floor, regions: &Regions, passage: &Passage) -> bool {
+    let Opening::Mouth(behind) = passage.throat.opening else { return true };
+    let region = regions.all.get(passage.sides[usize::from(behind)]);
+    let way = passage.sides[usize::from(!behind)];
+    passage.sides[0] != passage.sides[1]
+        && region.is_some_and(|region| {
+            region.area_m2 <= ROOM_MOST_M2 && aspect(region) <= BAY_ASPECT && region.area_m2 >= BAY_LEAST_M2
+        })
+        && kind(floor, regions, way) == RegionKind::Ways
 }
 
 /// Whether somebody in the middle of a region sees all its doors: what is round a corner is another place.

@@ -66,7 +66,7 @@ impl<'a> Naming<'a> {
                 let sides = self.regions.passages.get(passage).map(|passage| passage.sides);
                 sides.into_iter().flatten().any(|side| self.elevators.contains_key(&side))
             }
-            What::Mouth | What::Room(_) | What::Bay(_) | What::Car(_) | What::Mouth | What::Way | What::Corner => false,
+            What::Mouth | What::Room(_) | What::Bay(_) | What::Car(_) | What::Way | What::Corner => false,
         })
     }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_maps::Layer;
+use socrates_model::Vector;
 
 use crate::cells::{Cell, ROUND, height, step};
 use crate::floor::{Floor, Spot};
@@ -21,6 +22,12 @@ const ONE_JUNCTION_SHARE: f64 = 1.0;
 const SLOPE: f64 = 0.4;
 /// The rise is measured over so far, m.
 const SLOPE_M: f64 = 0.35;
+/// A way is looked at in so many places.
+const BEHIND_PARTS: usize = 12;
+/// A way behind furniture has walls within so many steps of 0.1 m on both sides.
+const BEHIND_STEPS: u32 = 9;
+/// What is led to a way over open floor ends at a place of it this near along it, m.
+const ONE_PLACE_M: f64 = 1.6;
 /// Passes of clearing at most: each shortens what is left.
 const PASSES: usize = 60;
 
@@ -140,6 +147,34 @@ impl Network {
         }
     }
 
+    /// Takes away narrow ways between furniture and a wall: nobody walks there who does not have to.
+    pub(crate) fn drop_behind_furniture(&mut self, floor: &Floor) {
+        let mut at = 0;
+        while let Some(branch) = self.branches.get(at) {
+            if is_behind_furniture(floor, &branch.path) && self.is_joined_without(at) {
+                self.branches.remove(at);
+            } else {
+                at += 1;
+            }
+        }
+    }
+
+    /// Whether the ends of a branch hang together without it.
+    fn is_joined_without(&self, branch: usize) -> bool {
+        let Some([from, to]) = self.branches.get(branch).map(|branch| branch.ends) else { return false };
+        let mut seen = vec![false; self.knots.len()];
+        let mut open = vec![from];
+        while let Some(knot) = open.pop() {
+            match seen.get_mut(knot) {
+                Some(flag) if !*flag => *flag = true,
+                Some(_) | None => continue,
+            }
+            let others = self.branches.iter().enumerate().filter(|(at, other)| *at != branch && other.ends.contains(&knot));
+            open.extend(others.flat_map(|(_, other)| other.ends));
+        }
+        from == to || seen.get(to) == Some(&true)
+    }
+
     /// Takes away the tips of one pass, the least telling of each junction first.
     fn prune(&mut self, floor: &Floor) {
         let mut degrees = self.degrees();
@@ -198,8 +233,12 @@ impl Network {
         let (before, after) = (known.path.get(..=place)?, known.path.get(place..)?);
         let [first, last] = known.ends;
         let near = |knot: usize, piece: &[Spot]| {
-            let door = matches!(self.knots.get(knot).and_then(|knot| knot.held), Some(Held::Door(_)));
-            (!door && length_m(piece) <= ONE_JUNCTION_M).then_some(knot)
+            let most_m = match self.knots.get(knot)?.held {
+                Some(Held::Door(_)) => return None,
+                Some(Held::Open) => ONE_PLACE_M,
+                Some(Held::Rim) | None => ONE_JUNCTION_M,
+            };
+            (length_m(piece) <= most_m).then_some(knot)
         };
         let (to_first, to_last) = (near(first, before), near(last, after));
         if let Some(knot) = if length_m(before) <= length_m(after) { to_first.or(to_last) } else { to_last.or(to_first) } {
@@ -325,6 +364,24 @@ impl Network {
             branch.ends = branch.ends.map(|end| places.get(end).copied().unwrap_or(end));
         }
     }
+}
+
+/// Whether a way is narrow and has furniture on one side and a wall on the other, for an eighth of it.
+fn is_behind_furniture(floor: &Floor, path: &[Spot]) -> bool {
+    let one_sided = |part: &usize| {
+        let place = path.len() * part / BEHIND_PARTS;
+        let (Some(spot), Some(next)) = (path.get(place), path.get(place + 1)) else { return false };
+        let Some(along) = (next - spot).try_normalize(1e-9) else { return false };
+        let aside = Vector::new(-along.y, along.x);
+        let side = |way: f64| {
+            let hit = (1..=BEHIND_STEPS).map(|step| spot + aside * (way * f64::from(step) * 0.1));
+            let hit = hit.into_iter().find(|spot| floor.clean_m(spot) <= 0.0)?;
+            // A little farther on: the first place may lie on the border of a free cell.
+            Some(floor.things.holds(floor.pixel(&(hit + aside * (way * 1.5 * floor.cell_m)))))
+        };
+        matches!((side(1.0), side(-1.0)), (Some(one), Some(other)) if one != other)
+    };
+    path.len() > 2 * BEHIND_PARTS && (1..BEHIND_PARTS).filter(one_sided).count() * 8 >= BEHIND_PARTS
 }
 
 /// How many places at the beginning of a way lie where it runs into a corner; at least two stay.

@@ -9,13 +9,13 @@ use crate::floor::{Floor, Spot};
 use crate::way::{LEAST_M, is_straight};
 
 /// Clearance without furniture from which on floor is open, m: no corridor is twice as wide.
-const CORE_M: f64 = 2.4;
+pub(crate) const CORE_M: f64 = 2.4;
 /// Open floor goes on round its core for so far, m.
 const ROUND_M: f64 = 1.9;
 /// Least area of open floor, m²: what is smaller is where ways meet.
 const LEAST_M2: f64 = 50.0;
 /// Largest share of open floor that things cover: among more of them the ways between them are what counts.
-const COVERED: f64 = 0.12;
+const COVERED: f64 = 0.06;
 /// Places on open floor are about so far apart, m.
 const STEP_M: f64 = 4.8;
 /// A place is moved at most so far, m, to floor that is free for so much round it, m.

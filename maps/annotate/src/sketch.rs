@@ -4,22 +4,31 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_maps::Layer;
 use socrates_model::Vector;
+use socrates_model::geometry::segments_cross;
 
 use crate::floor::{Floor, Spot};
 use crate::kind::RegionKind;
 use crate::middle::middle;
 use crate::network::{Branch, Held, Network, length_m};
-use crate::open::Open;
+use crate::open::{CORE_M, Open};
 use crate::region::Regions;
 use crate::throat::Opening;
 use crate::way::{KEPT_M, LEAST_M, is_straight, least_m, simplified, way};
 
 /// Longest edge before it is parted, m: somebody who stands at a node then is near to somebody who passes.
 const EDGE_MOST_M: f64 = 4.6;
+/// The same on open floor, m: there everybody sees everybody.
+const OPEN_EDGE_MOST_M: f64 = 7.5;
 /// A narrow way this long has a node of its own, m.
 const NARROW_LEAST_M: f64 = 2.4;
 /// A way with less clean clearance than this on both sides is narrow, m: two people of 0.6 m do not pass with ease.
 pub(crate) const NARROW_M: f64 = 0.8;
+/// Longest straight way that is added beside others, m.
+const SHORTCUT_MOST_M: f64 = 8.0;
+/// Clearance in the middle of such a way, m.
+const SHORTCUT_CLEAR_M: f64 = 1.2;
+/// How many times as long the way along the others is at least.
+const SHORTCUT: f64 = 1.5;
 /// So many places of ways are tried, the nearest first, before a door is led round something.
 const SEEN_MOST: usize = 400;
 /// Interior corners nearer to each other than this are one, m.
@@ -81,7 +90,7 @@ impl Sketch {
                 let at = free_middle(ground.floor, &passage.throat);
                 let what = match passage.throat.opening {
                     Opening::Door => What::Door(number),
-                    Opening::Wide => What::Mouth,
+                    Opening::Wide | Opening::Mouth(_) => What::Mouth,
                 };
                 doors.insert(number, made.add(at, what));
             }
@@ -92,7 +101,61 @@ impl Sketch {
             }
         }
         made.network(ground, &doors);
+        made.shortcuts(ground);
         made
+    }
+
+    /// Adds straight ways over wide floor where the way along the others is much longer.
+    fn shortcuts(&mut self, ground: &Ground<'_>) {
+        let mut pairs: Vec<(f64, [usize; 2])> = Vec::new();
+        for b in 0..self.places.len() {
+            for a in 0..b {
+                let length = (self.at(a) - self.at(b)).norm();
+                let walked = |at: usize| self.places.get(at).is_some_and(|place| matches!(place.what, What::Way | What::Corner));
+                if length <= SHORTCUT_MOST_M && walked(a) && walked(b) {
+                    pairs.push((length, [a, b]));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (length, [a, b]) in pairs {
+            let (from, to) = (self.at(a), self.at(b));
+            let crosses = || {
+                self.ways.iter().any(|way| {
+                    !way.contains(&a) && !way.contains(&b) && segments_cross(&from, &to, &self.at(way[0]), &self.at(way[1]))
+                })
+            };
+            let floor = ground.floor;
+            if floor.clean_m(&(from + (to - from) * 0.5)) >= SHORTCUT_CLEAR_M
+                && floor.line_m(&from, &to) >= KEPT_M
+                && floor.clean_line_m(&from, &to) > 0.0
+                && self.length_m(a, b, SHORTCUT * length) > SHORTCUT * length
+                && !crosses()
+            {
+                self.ways.push([a, b]);
+            }
+        }
+    }
+
+    /// Length of the shortest way between two places, m; infinite where it is longer than the most.
+    fn length_m(&self, from: usize, to: usize, most_m: f64) -> f64 {
+        let mut away: BTreeMap<usize, f64> = BTreeMap::from([(from, 0.0)]);
+        let mut open: Vec<(f64, usize)> = vec![(0.0, from)];
+        while let Some(next) = open.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0)).map(|(at, _)| at) {
+            let (so_far, here) = open.swap_remove(next);
+            if here == to || so_far > most_m {
+                return if here == to { so_far } else { f64::INFINITY };
+            }
+            for [a, b] in self.ways.iter().filter(|way| way.contains(&here)) {
+                let other = if *a == here { *b } else { *a };
+                let total = so_far + (self.at(other) - self.at(here)).norm();
+                if away.get(&other).is_none_or(|known| total < *known) {
+                    away.insert(other, total);
+                    open.push((total, other));
+                }
+            }
+        }
+        f64::INFINITY
     }
 
     fn add(&mut self, at: Spot, what: What) -> usize {
@@ -190,6 +253,8 @@ impl Sketch {
         }
         network.trim(ground.floor);
         network.clear(ground.floor);
+        network.drop_behind_furniture(ground.floor);
+        network.clear(ground.floor);
         open_floor(ground, &mut network);
         for number in doors.keys() {
             let Some(passage) = ground.regions.passages.get(*number) else { continue };
@@ -203,7 +268,8 @@ impl Sketch {
                 }
             }
         }
-        network.join_through();
+        // A tip beside a door says nothing that the door does not.
+        network.clear(ground.floor);
         let mut placed: BTreeMap<usize, usize> = BTreeMap::new();
         for (number, knot) in network.knots.iter().enumerate() {
             let at_door = if let Some(Held::Door(passage)) = knot.held { doors.get(&passage).copied() } else { None };
@@ -269,7 +335,8 @@ impl Sketch {
         let middle = a + (b - a) * 0.5;
         let narrow = floor.clean_m(&middle) < NARROW_M && length >= NARROW_LEAST_M;
         let least = if narrow || needed { 2 } else { 1 };
-        let pieces = ((length / EDGE_MOST_M).ceil() as u32).max(least);
+        let most_m = if floor.clean_m(&middle) > CORE_M { OPEN_EDGE_MOST_M } else { EDGE_MOST_M };
+        let pieces = ((length / most_m).ceil() as u32).max(least);
         let mut last = from;
         for piece in 1..pieces {
             let at = a + (b - a) * (f64::from(piece) / f64::from(pieces));
@@ -321,15 +388,14 @@ pub(crate) fn free_middle(floor: &Floor, throat: &crate::throat::Throat) -> Spot
 /// Adds the places on open floor, and leads what ends at its rim to them.
 fn open_floor(ground: &Ground<'_>, network: &mut Network) {
     let floor = ground.floor;
-    let mut places: Vec<usize> = Vec::new();
+    let from = network.branches.len();
     for lattice in &ground.open.lattices {
         let knots: Vec<usize> = lattice.spots.iter().map(|spot| network.add(*spot, Some(Held::Open))).collect();
         for way in &lattice.ways {
             let [Some(from), Some(to)] = way.map(|end| knots.get(end).copied()) else { continue };
-            let path = [from, to].iter().filter_map(|knot| network.knots.get(*knot)).map(|knot| knot.at).collect();
-            network.branches.push(Branch { ends: [from, to], path });
+            let [Some(a), Some(b)] = [from, to].map(|knot| network.knots.get(knot).map(|knot| knot.at)) else { continue };
+            network.branches.push(Branch { ends: [from, to], path: dense(floor, &a, &b) });
         }
-        places.extend(knots);
     }
     let rims: Vec<usize> = (0..network.knots.len())
         .filter(|knot| network.knots.get(*knot).is_some_and(|knot| knot.held == Some(Held::Rim)))
@@ -338,16 +404,48 @@ fn open_floor(ground: &Ground<'_>, network: &mut Network) {
         let Some(knot) = network.knots.get_mut(rim) else { continue };
         knot.held = None;
         let at = knot.at;
-        let spot = |place: &usize| network.knots.get(*place).map_or(at, |knot| knot.at);
-        let mut near: Vec<usize> = places.clone();
-        near.sort_by(|a, b| (spot(a) - at).norm().total_cmp(&(spot(b) - at).norm()).then(a.cmp(b)));
-        let seen = near.iter().find(|place| is_straight(floor, &at, &spot(place), LEAST_M));
-        let Some(place) = seen.or_else(|| near.first()).copied() else { continue };
-        let to = spot(&place);
-        let path = if is_straight(floor, &at, &to, LEAST_M) { Some(vec![at, to]) } else { way(floor, &at, &to) };
-        if let Some(path) = path {
-            network.branches.push(Branch { ends: [rim, place], path });
+        let mut near: Vec<(f64, usize, usize)> = Vec::new();
+        for (number, branch) in network.branches.iter().enumerate().skip(from) {
+            let spots = branch.path.iter().enumerate();
+            near.extend(spots.map(|(place, spot)| ((spot - at).norm(), number, place)));
         }
+        join(floor, network, rim, near, &|spot| is_straight(floor, &at, spot, LEAST_M));
+    }
+}
+
+/// A straight way with a place at every other cell.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells of a way")]
+fn dense(floor: &Floor, from: &Spot, to: &Spot) -> Vec<Spot> {
+    let steps = ((to - from).norm() / (2.0 * floor.cell_m)).ceil().clamp(1.0, 1e4) as u32;
+    (0..=steps).map(|step| from + (to - from) * (f64::from(step) / f64::from(steps))).collect()
+}
+
+/// Leads a knot to the nearest of the places of branches that it sees, or round something to the nearest one.
+fn join(
+    floor: &Floor,
+    network: &mut Network,
+    knot: usize,
+    mut near: Vec<(f64, usize, usize)>,
+    sees: &dyn Fn(&Spot) -> bool,
+) -> bool {
+    let Some(at) = network.knots.get(knot).map(|knot| knot.at) else { return false };
+    near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let seen = near.iter().take(SEEN_MOST).find(|(_, branch, place)| {
+        let spot = network.branches.get(*branch).and_then(|branch| branch.path.get(*place));
+        spot.is_some_and(sees)
+    });
+    let Some((_, branch, place)) = seen.or_else(|| near.first()).copied() else { return false };
+    let Some(other) = network.parted(branch, place) else { return false };
+    lead(floor, network, at, knot, other);
+    true
+}
+
+/// A branch between two knots, straight or round something.
+fn lead(floor: &Floor, network: &mut Network, at: Spot, knot: usize, other: usize) {
+    let Some(to) = network.knots.get(other).map(|knot| knot.at).filter(|_| other != knot) else { return };
+    let path = if is_straight(floor, &at, &to, LEAST_M) { Some(vec![at, to]) } else { way(floor, &at, &to) };
+    if let Some(path) = path {
+        network.branches.push(Branch { ends: [knot, other], path });
     }
 }
 
@@ -364,28 +462,13 @@ fn attach(ground: &Ground<'_>, network: &mut Network, door: usize, (region, befo
         let spots = branch.path.iter().enumerate().filter(|(_, spot)| own(spot));
         near.extend(spots.map(|(place, spot)| ((spot - before).norm(), number, place)));
     }
-    near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let spot_of = |network: &Network, (_, branch, place): &(f64, usize, usize)| {
-        network.branches.get(*branch).and_then(|branch| branch.path.get(*place)).copied()
-    };
-    let straight = |candidate: &&(f64, usize, usize)| {
-        let spot = spot_of(network, candidate);
-        // On this side of the door, which is closed on the clean map.
-        spot.is_some_and(|spot| floor.clean_line_m(&before, &spot) > 0.0 && is_straight(floor, &at, &spot, LEAST_M))
-    };
-    let seen = near.iter().take(SEEN_MOST).find(straight).or_else(|| near.first()).copied();
-    let knot = match seen {
-        Some((_, branch, place)) => network.parted(branch, place),
-        None => {
-            // A piece of floor without a way of its own.
-            let middle = middle(floor, ground.regions, region, &[before]);
-            let known = network.knots.iter().position(|knot| knot.held.is_none() && knot.at == middle);
-            Some(known.unwrap_or_else(|| network.add(middle, None)))
-        }
-    };
-    let Some((knot, to)) = knot.and_then(|knot| Some((knot, network.knots.get(knot)?.at))) else { return };
-    let path = if is_straight(floor, &at, &to, LEAST_M) { Some(vec![at, to]) } else { way(floor, &at, &to) };
-    if let Some(path) = path {
-        network.branches.push(Branch { ends: [door, knot], path });
+    // On this side of the door, which is closed on the clean map.
+    let sees = |spot: &Spot| floor.clean_line_m(&before, spot) > 0.0 && is_straight(floor, &at, spot, LEAST_M);
+    if !join(floor, network, door, near, &sees) {
+        // A piece of floor without a way of its own.
+        let middle = middle(floor, ground.regions, region, &[before]);
+        let known = network.knots.iter().position(|knot| knot.held.is_none() && knot.at == middle);
+        let knot = known.unwrap_or_else(|| network.add(middle, None));
+        lead(floor, network, at, door, knot);
     }
 }

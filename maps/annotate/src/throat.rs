@@ -16,6 +16,8 @@ use crate::floor::{Floor, Spot};
 const WIDEST_M: f64 = 1.7;
 /// Widest opening that parts the floor, m: one of several leaves or none.
 const WIDEST_OPEN_M: f64 = 3.6;
+/// Widths of the mouth of a bay, m.
+const MOUTH_M: (f64, f64) = (3.6, 9.0);
 /// Deepest wall of a door, m: what is longer is a passage, or the gap beside furniture.
 const DEEPEST_M: f64 = 0.75;
 /// A wall thinner than this has a door even where one jamb is flush with another wall, m.
@@ -58,6 +60,8 @@ pub(crate) enum Opening {
     Door,
     /// Wider than any door: what lies beyond is a place of its own, and open to this one.
     Wide,
+    /// The whole side of a bay: the walls of a way go on beside it, and those of the bay begin at it. True where the bay lies behind.
+    Mouth(bool),
 }
 
 /// An opening between two wall ends.
@@ -153,8 +157,24 @@ impl Throat {
         door.then_some(Opening::Door)
     }
 
+    /// Whether it is the mouth of a bay, and on which side the bay lies: true behind it.
+    fn mouth(&self) -> Option<bool> {
+        if !(MOUTH_M.0..=MOUTH_M.1).contains(&self.width_m) {
+            return None;
+        }
+        let [[left_before, left_behind], [right_before, right_behind]] = [self.beside(false), self.beside(true)];
+        let (before, behind) = (self.reach_m.0, self.reach_m.1);
+        // The walls of the way go on on both sides, right at the line; those of the bay go straight in.
+        let is_way = |left: f64, right: f64, reach: f64| left.min(right) >= 2.0 * SHOULDER_M && reach <= 0.15;
+        let is_bay = |left: f64, right: f64, reach: f64| left.max(right) < SHOULDER_M && reach > DEEPEST_M;
+        if is_way(left_before, right_before, before) && is_bay(left_behind, right_behind, behind) {
+            return Some(true);
+        }
+        (is_way(left_behind, right_behind, behind) && is_bay(left_before, right_before, before)).then_some(false)
+    }
+
     /// Whether two lines are openings of the same place.
-    fn meets(&self, other: &Self) -> bool {
+    pub(crate) fn meets(&self, other: &Self) -> bool {
         (self.middle() - other.middle()).norm() < 0.5 * self.width_m.min(other.width_m) + 0.25
     }
 }
@@ -165,12 +185,16 @@ pub(crate) fn openings(floor: &Floor, spots: &[Spot]) -> Vec<Throat> {
         let outward = (throat.to - throat.from).normalize() * (2.0 * floor.map_cell_m);
         !floor.things.holds(floor.pixel(&(throat.from - outward))) && !floor.things.holds(floor.pixel(&(throat.to + outward)))
     };
-    let probed = spots.iter().filter_map(|spot| probe(floor, spot)).filter_map(|throat| {
+    let sense = |spot: &Spot| floor.clean_m(spot);
+    let probed = spots.iter().filter_map(|spot| probe(&sense, spot, WIDEST_OPEN_M)).filter_map(|throat| {
         let opening = throat.kind(floor)?;
         Some(Throat { opening, ..throat })
     });
-    let mut found: Vec<Throat> = probed.filter(between_walls).collect();
-    // The best of each place: the surest, of equally sure ones the narrowest.
+    best(probed.filter(between_walls).collect())
+}
+
+/// The best opening of each place: the surest, of equally sure ones the narrowest.
+fn best(mut found: Vec<Throat>) -> Vec<Throat> {
     found.sort_by(|a, b| {
         let wide = |throat: &Throat| throat.opening == Opening::Wide;
         let order = wide(a).cmp(&wide(b)).then(b.shoulder_count().cmp(&a.shoulder_count())).then(a.width_m.total_cmp(&b.width_m));
@@ -189,34 +213,52 @@ pub(crate) fn openings(floor: &Floor, spots: &[Spot]) -> Vec<Throat> {
     kept
 }
 
+/// Every mouth of a bay on the floor without furniture, by the cells of its skeleton.
+pub(crate) fn mouths(floor: &Floor, spots: &[Spot]) -> Vec<Throat> {
+    let sense = |spot: &Spot| floor.bare_at(spot);
+    let probed = spots.iter().filter_map(|spot| probe(&sense, spot, MOUTH_M.1)).filter_map(|throat| {
+        let behind = throat.mouth()?;
+        Some(Throat { opening: Opening::Mouth(behind), ..throat })
+    });
+    best(probed.collect())
+}
+
+/// Whether a place on the skeleton with this clearance can be in a mouth, m.
+pub(crate) fn is_in_mouth(clear_m: f64) -> bool {
+    (0.4 * MOUTH_M.0..=0.5 * MOUTH_M.1 + 0.3).contains(&clear_m)
+}
+
 /// Whether a place on the skeleton with this clearance can be in a door, m.
 pub(crate) fn is_narrow(clear_m: f64) -> bool {
     clear_m <= 0.5 * WIDEST_OPEN_M + 0.05
 }
 
+/// How far it is to the nearest wall, m.
+type Sense<'a> = &'a dyn Fn(&Spot) -> f64;
+
 /// The throat through a spot, if walls stand near on both sides.
-fn probe(floor: &Floor, spot: &Spot) -> Option<Throat> {
-    let (left, right, along) = narrowest(floor, spot)?;
+fn probe(sense: Sense<'_>, spot: &Spot, widest_m: f64) -> Option<Throat> {
+    let (left, right, along) = narrowest(sense, spot, widest_m)?;
     let middle = spot + along * (0.5 * (left - right));
     let width_m = left + right;
     let (from, to) = (middle - along * (0.5 * width_m), middle + along * (0.5 * width_m));
     let ahead = Vector::new(-along.y, along.x);
     let mut throat = Throat { from, to, width_m, opening: Opening::Door, ahead, reach_m: (0.0, 0.0), shoulders: [0.0; 4] };
-    let before = end(floor, &middle, &along, &ahead, width_m)?;
-    let behind = end(floor, &middle, &along, &-ahead, width_m)?;
+    let before = end(sense, &middle, &along, &ahead, width_m)?;
+    let behind = end(sense, &middle, &along, &-ahead, width_m)?;
     throat.reach_m = (before.0, behind.0);
     throat.shoulders = [before.1, before.2, behind.1, behind.2];
     Some(throat)
 }
 
 /// The shortest line from wall to wall through a spot: how far to both sides, and its direction.
-fn narrowest(floor: &Floor, spot: &Spot) -> Option<(f64, f64, Vector)> {
+fn narrowest(sense: Sense<'_>, spot: &Spot, widest_m: f64) -> Option<(f64, f64, Vector)> {
     let mut best: Option<(f64, f64, Vector)> = None;
     for turn in 0..TURNS {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(turn) / f64::from(TURNS));
         let along = Vector::new(cos, sin);
-        let Some(left) = to_wall(floor, spot, &-along, WIDEST_OPEN_M) else { continue };
-        let Some(right) = to_wall(floor, spot, &along, WIDEST_OPEN_M) else { continue };
+        let Some(left) = to_wall(sense, spot, &-along, widest_m) else { continue };
+        let Some(right) = to_wall(sense, spot, &along, widest_m) else { continue };
         if best.is_none_or(|(a, b, _)| left + right < a + b - 1e-6) {
             best = Some((right, left, along));
         }
@@ -234,10 +276,10 @@ fn thickness_m(floor: &Floor, at: &Spot, ahead: &Vector) -> f64 {
 }
 
 /// How far it is to the wall, m, if at most so far.
-fn to_wall(floor: &Floor, from: &Spot, along: &Vector, most_m: f64) -> Option<f64> {
+fn to_wall(sense: Sense<'_>, from: &Spot, along: &Vector, most_m: f64) -> Option<f64> {
     let mut gone_m = 0.0;
     while gone_m <= most_m {
-        let clear_m = floor.clean_m(&(from + along * gone_m));
+        let clear_m = sense(&(from + along * gone_m));
         if clear_m < WALL_M {
             return Some(gone_m);
         }
@@ -247,17 +289,17 @@ fn to_wall(floor: &Floor, from: &Spot, along: &Vector, most_m: f64) -> Option<f6
 }
 
 /// Where a throat ends in one direction: how far from its middle, and the shoulders on both sides there. None where a wall ends it.
-fn end(floor: &Floor, middle: &Spot, along: &Vector, ahead: &Vector, width_m: f64) -> Option<(f64, f64, f64)> {
+fn end(sense: Sense<'_>, middle: &Spot, along: &Vector, ahead: &Vector, width_m: f64) -> Option<(f64, f64, f64)> {
     let half = 0.5 * width_m;
     let beside = |at: &Spot| {
-        let side = |way: &Vector| to_wall(floor, at, way, half + BESIDE_M).map_or(BESIDE_M, |m| (m - half).max(0.0));
+        let side = |way: &Vector| to_wall(sense, at, way, half + BESIDE_M).map_or(BESIDE_M, |m| (m - half).max(0.0));
         (side(&-along), side(along))
     };
     let mut gone_m = 0.0;
     let (mut left, mut right) = (0.0_f64, 0.0_f64);
     while gone_m <= DEEPEST_M + STEP_M {
         let at = middle + ahead * gone_m;
-        if floor.clean_m(&at) < WALL_M {
+        if sense(&at) < WALL_M {
             return None;
         }
         (left, right) = beside(&at);
@@ -269,7 +311,7 @@ fn end(floor: &Floor, middle: &Spot, along: &Vector, ahead: &Vector, width_m: f6
     // The floor may widen a little later on the other side.
     for more in 1..=4_u32 {
         let at = middle + ahead * (gone_m + f64::from(more) * STEP_M);
-        if floor.clean_m(&at) < WALL_M {
+        if sense(&at) < WALL_M {
             break;
         }
         let (l, r) = beside(&at);
