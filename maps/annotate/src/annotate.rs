@@ -128,7 +128,7 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
     let open = Open::of(&floor, &ways);
     let ground = Ground { floor: &floor, regions: &regions, kinds: &kinds, cars: &cars, skeleton: &skeleton, open: &open };
     let mut sketch = Sketch::of(&ground);
-    one_piece(&floor, &regions, &elevators, &mut sketch, &mut remarks);
+    one_piece(&mut sketch, &mut remarks);
     let mut made = written(grid, &Naming::new(&floor, &regions, &sketch, &elevators));
     doubts(&floor, &regions, &made, &mut remarks);
     // Remarks were made on the picture; people look at the map.
@@ -343,40 +343,11 @@ fn left_out(floor: &Floor, regions: &Regions, kept: &BTreeSet<usize>, remarks: &
     }
 }
 
-/// Keeps the largest part of the sketch that hangs together, and ways along which the robot gets.
-fn one_piece(
-    floor: &Floor,
-    regions: &Regions,
-    elevators: &BTreeMap<usize, usize>,
-    sketch: &mut Sketch,
-    remarks: &mut Vec<Remark>,
-) {
-    let free: Vec<bool> = {
-        let naming = Naming::new(floor, regions, sketch, elevators);
-        sketch.ways.iter().map(|way| naming.is_free(*way)).collect()
-    };
-    let mut free = free.into_iter();
-    sketch.ways.retain(|_| free.next() == Some(true));
-    let mut part: Vec<usize> = (0..sketch.places.len()).collect();
-    let root = |part: &[usize], mut at: usize| {
-        while let Some(up) = part.get(at).copied().filter(|up| *up != at) {
-            at = up;
-        }
-        at
-    };
-    for [a, b] in &sketch.ways {
-        let (a, b) = (root(&part, *a), root(&part, *b));
-        if let Some(slot) = part.get_mut(a.max(b)) {
-            *slot = a.min(b);
-        }
-    }
-    let roots: Vec<usize> = (0..part.len()).map(|at| root(&part, at)).collect();
-    let mut sizes: BTreeMap<usize, usize> = BTreeMap::new();
-    for own in &roots {
-        *sizes.entry(*own).or_insert(0) += 1;
-    }
-    let largest = sizes.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map(|(own, _)| *own);
-    let stays: Vec<bool> = roots.iter().map(|own| Some(*own) == largest).collect();
+/// Keeps the largest part of the sketch that hangs together.
+fn one_piece(sketch: &mut Sketch, remarks: &mut Vec<Remark>) {
+    let parts = sketch.parts();
+    let largest = Sketch::largest(&parts);
+    let stays: Vec<bool> = parts.iter().map(|own| Some(*own) == largest).collect();
     let lost: Vec<Spot> =
         sketch.places.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(place, _)| place.at).collect();
     for spot in lost.iter().take(NAMED_MOST) {

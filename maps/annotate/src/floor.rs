@@ -241,8 +241,8 @@ impl Floor {
         (self.clear_m.width, height(&self.clear_m))
     }
 
-    /// Least clearance of the middle of a cell through which the robot gets, m: in an opening of an even number of cells the
-    /// middle of a cell lies half a cell beside that of the opening.
+    /// Least clearance of the middle of a cell through which the robot gets, m: half a cell less than its half width, since the middle
+    /// of an opening of an even number of cells lies between the middles of cells.
     pub(crate) fn body_of_cell_m(&self) -> f64 {
         BODY_M - 0.5 * self.cell_m.min(0.1)
     }

@@ -1,6 +1,6 @@
 //! What a region is: a room, or floor along which ways lead.
 
-use crate::floor::{Floor, Spot};
+use crate::floor::{BODY_M, Floor, Spot};
 use crate::middle::middle;
 use crate::region::{Passage, Region, Regions};
 use crate::throat::Opening;
@@ -42,7 +42,8 @@ pub(crate) fn aspect(region: &Region) -> f64 {
 pub(crate) fn kind(floor: &Floor, regions: &Regions, at: usize) -> RegionKind {
     let Some(region) = regions.all.get(at) else { return RegionKind::Ways };
     let doors = regions.passages_of(at).count();
-    let slim = aspect(region);
+    // An angled floor has a small area for its length.
+    let slim = aspect(region).max(length_m(floor, region) / (2.0 * region.bare_m).max(0.1));
     let room = doors > 0
         && region.area_m2 <= ROOM_MOST_M2
         && if doors >= CORRIDOR_DOORS { slim < 0.5 * ROOM_ASPECT } else { slim < ROOM_ASPECT }
@@ -53,6 +54,20 @@ pub(crate) fn kind(floor: &Floor, regions: &Regions, at: usize) -> RegionKind {
         (true, true) => RegionKind::Bay,
         (false, _) => RegionKind::Ways,
     }
+}
+
+/// The longer side of the box round a region, m.
+pub(crate) fn length_m(floor: &Floor, region: &Region) -> f64 {
+    sides_m(floor, region).into_iter().fold(0.0, f64::max)
+}
+
+/// Both sides of the box round a region, m: the robot's middle keeps its half width from the walls.
+pub(crate) fn sides_m(floor: &Floor, region: &Region) -> [f64; 2] {
+    [region.extent.columns, region.extent.rows].map(|(first, last)| {
+        #[expect(clippy::cast_precision_loss, reason = "cells of a map")]
+        let cells = (last + 1).saturating_sub(first) as f64;
+        (cells - 1.0) * floor.cell_m + 2.0 * BODY_M
+    })
 }
 
 /// Whether a mouth leads from a way to a bay, and not to a way that goes on: its region is compact.
@@ -77,13 +92,7 @@ fn is_overlooked(floor: &Floor, regions: &Regions, at: usize) -> bool {
 /// Whether a region may be the car of an elevator: small, about square, one door.
 pub(crate) fn may_be_car(floor: &Floor, regions: &Regions, at: usize) -> bool {
     let Some(region) = regions.all.get(at) else { return false };
-    // The robot's middle keeps its half width from the walls on both sides.
-    let side = |(first, last): (usize, usize)| {
-        #[expect(clippy::cast_precision_loss, reason = "cells of a map")]
-        let cells = (last + 1).saturating_sub(first) as f64;
-        (cells - 1.0) * floor.cell_m + 2.0 * crate::floor::BODY_M
-    };
-    let (wide, tall) = (side(region.extent.columns), side(region.extent.rows));
+    let [wide, tall] = sides_m(floor, region);
     let mut doors = regions.passages_of(at);
     let (Some((_, door)), None) = (doors.next(), doors.next()) else { return false };
     let sized = |m: f64| (CAR_M.0..=CAR_M.1).contains(&m);

@@ -6,7 +6,6 @@ use crate::floor::{Floor, Spot};
 use crate::kind::aspect;
 use crate::region::Regions;
 use crate::sketch::{NARROW_M, Sketch, What};
-use crate::way::is_straight;
 
 /// Floor with more clean clearance than this is an open area, m: wider than any corridor.
 const OPEN_M: f64 = 2.2;
@@ -163,11 +162,6 @@ impl<'a> Naming<'a> {
             "CORRIDOR"
         };
         kind.to_owned()
-    }
-
-    /// Whether the robot gets along a way as it is drawn.
-    pub(crate) fn is_free(&self, [a, b]: [usize; 2]) -> bool {
-        is_straight(self.floor, &self.sketch.at(a), &self.sketch.at(b), 0.0)
     }
 }
 

@@ -96,7 +96,8 @@ impl Open {
             };
             let low = floor.spot((part.extent.columns.0, part.extent.rows.0));
             let high = floor.spot((part.extent.columns.1, part.extent.rows.1));
-            lattice(floor, (low, high), own)
+            let count = |length: f64| ((length / STEP_M).round() as u32).clamp(1, 200);
+            lattice(floor, (low, high), (count(high.x - low.x), count(high.y - low.y)), own)
         });
         let lattices = lattices.collect();
         Self { on, lattices }
@@ -110,11 +111,13 @@ impl Open {
     }
 }
 
-/// A lattice over a box, where its spots lie on its own floor.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few places")]
-pub(crate) fn lattice(floor: &Floor, (low, high): (Spot, Spot), own: impl Fn(&Spot) -> bool) -> Lattice {
-    let count = |length: f64| ((length / STEP_M).round() as u32).clamp(1, 200);
-    let (columns, rows) = (count(high.x - low.x), count(high.y - low.y));
+/// A lattice of so many columns and rows over a box, where its spots lie on its own floor.
+fn lattice(
+    floor: &Floor,
+    (low, high): (Spot, Spot),
+    (columns, rows): (u32, u32),
+    own: impl Fn(&Spot) -> bool,
+) -> Lattice {
     let mut made = Lattice::default();
     let mut numbers: BTreeMap<(u32, u32), usize> = BTreeMap::new();
     for row in 0..rows {
@@ -122,7 +125,7 @@ pub(crate) fn lattice(floor: &Floor, (low, high): (Spot, Spot), own: impl Fn(&Sp
             let share = |at: u32, count: u32| (f64::from(at) + 0.5) / f64::from(count);
             let x = low.x + (high.x - low.x) * share(column, columns);
             let y = low.y + (high.y - low.y) * share(row, rows);
-            if let Some(spot) = free_near(floor, &Spot::new(x, y), &own) {
+            if let Some(spot) = free_near(floor, &Spot::new(x, y), FREE_M, &own) {
                 numbers.insert((column, row), made.spots.len());
                 made.spots.push(spot);
             }
@@ -142,12 +145,12 @@ pub(crate) fn lattice(floor: &Floor, (low, high): (Spot, Spot), own: impl Fn(&Sp
 
 /// The nearest spot on its own floor that is free all round, if there is one nearby.
 #[expect(clippy::cast_possible_truncation, reason = "a few steps")]
-fn free_near(floor: &Floor, spot: &Spot, own: &impl Fn(&Spot) -> bool) -> Option<Spot> {
+pub(crate) fn free_near(floor: &Floor, spot: &Spot, free_m: f64, own: &impl Fn(&Spot) -> bool) -> Option<Spot> {
     let reach = (MOVED_M / 0.2) as i32;
     let mut tried: Vec<Spot> = (-reach..=reach)
         .flat_map(|down| (-reach..=reach).map(move |right| (right, down)))
         .map(|(right, down)| spot + socrates_model::Vector::new(f64::from(right), f64::from(down)) * 0.2)
         .collect();
     tried.sort_by(|a, b| (a - spot).norm().total_cmp(&(b - spot).norm()));
-    tried.into_iter().find(|near| own(near) && floor.raw_m(near) >= FREE_M)
+    tried.into_iter().find(|near| own(near) && floor.raw_m(near) >= free_m)
 }

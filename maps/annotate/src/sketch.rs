@@ -7,13 +7,13 @@ use socrates_model::Vector;
 use socrates_model::geometry::segments_cross;
 
 use crate::floor::{Floor, Spot};
-use crate::kind::RegionKind;
+use crate::kind::{RegionKind, sides_m};
 use crate::middle::middle;
 use crate::network::{Branch, Held, Network, length_m};
-use crate::open::{CORE_M, Open};
+use crate::open::{CORE_M, Open, free_near};
 use crate::region::Regions;
 use crate::throat::Opening;
-use crate::way::{KEPT_M, LEAST_M, is_straight, least_m, simplified, way};
+use crate::way::{KEPT_M, LEAST_M, approach, is_straight, least_m, simplified, way};
 
 /// Longest edge before it is parted, m: somebody who stands at a node then is near to somebody who passes.
 const EDGE_MOST_M: f64 = 4.6;
@@ -29,6 +29,16 @@ const SHORTCUT_MOST_M: f64 = 8.0;
 const SHORTCUT_CLEAR_M: f64 = 1.2;
 /// How many times as long the way along the others is at least.
 const SHORTCUT: f64 = 1.5;
+/// Places in a long room are at least so far apart, m.
+const ROOM_STEP_M: f64 = 2.4;
+/// A place that is not seen from a door counts as so much farther away, m.
+const UNSEEN_M: f64 = 4.0;
+/// A door leads straight to a place in its room where the way over others is so many times as long.
+const ROUND: f64 = 1.15;
+/// A door is approached from so far before its wall, m.
+const BEFORE_M: f64 = 0.35;
+/// So many pairs of places are tried to join two parts.
+const REPAIRS: usize = 4;
 /// So many places of ways are tried, the nearest first, before a door is led round something.
 const SEEN_MOST: usize = 400;
 /// Interior corners nearer to each other than this are one, m.
@@ -102,7 +112,80 @@ impl Sketch {
         }
         made.network(ground, &doors);
         made.shortcuts(ground);
+        made.drop_blocked(ground.floor);
+        made.repair(ground.floor);
         made
+    }
+
+    /// Takes away ways along which the robot does not get.
+    fn drop_blocked(&mut self, floor: &Floor) {
+        let ways = std::mem::take(&mut self.ways);
+        self.ways = ways.into_iter().filter(|[a, b]| is_straight(floor, &self.at(*a), &self.at(*b), 0.0)).collect();
+    }
+
+    /// Number of the part of each place that hangs together, the lowest of its places.
+    pub(crate) fn parts(&self) -> Vec<usize> {
+        let mut up: Vec<usize> = (0..self.places.len()).collect();
+        let root = |up: &[usize], mut at: usize| {
+            while let Some(next) = up.get(at).copied().filter(|next| *next != at) {
+                at = next;
+            }
+            at
+        };
+        for [a, b] in &self.ways {
+            let (a, b) = (root(&up, *a), root(&up, *b));
+            if let Some(slot) = up.get_mut(a.max(b)) {
+                *slot = a.min(b);
+            }
+        }
+        (0..up.len()).map(|at| root(&up, at)).collect()
+    }
+
+    /// The number of the largest part.
+    pub(crate) fn largest(parts: &[usize]) -> Option<usize> {
+        let mut sizes: BTreeMap<usize, usize> = BTreeMap::new();
+        for part in parts {
+            *sizes.entry(*part).or_insert(0) += 1;
+        }
+        sizes.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map(|(part, _)| *part)
+    }
+
+    /// Leads parts that nothing joins with the largest one there, round what lies between them.
+    fn repair(&mut self, floor: &Floor) {
+        let mut hopeless: BTreeSet<usize> = BTreeSet::new();
+        for _ in 0..self.places.len() {
+            let parts = self.parts();
+            let Some(main) = Self::largest(&parts) else { return };
+            let of_main = |place: &usize| parts.get(*place) == Some(&main);
+            let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+            for (place, part) in parts.iter().enumerate() {
+                if *part == main || hopeless.contains(part) {
+                    continue;
+                }
+                let others = (0..self.places.len()).filter(of_main);
+                pairs.extend(others.map(|other| ((self.at(other) - self.at(place)).norm(), place, other)));
+            }
+            pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+            let Some((_, first, _)) = pairs.first().copied() else { return };
+            let Some(part) = parts.get(first).copied() else { return };
+            let own = pairs.iter().filter(|(_, place, _)| parts.get(*place) == Some(&part)).take(REPAIRS);
+            let found = own.into_iter().find_map(|(_, place, other)| {
+                let path = way(floor, &self.at(*place), &self.at(*other))?;
+                Some((*place, *other, path))
+            });
+            match found {
+                Some((place, other, path)) => {
+                    let corners = spread(floor, &simplified(floor, &path));
+                    self.chain(place, other, &corners, What::Corner);
+                    if self.parts().get(place) != self.parts().get(other) {
+                        hopeless.insert(part);
+                    }
+                }
+                None => {
+                    hopeless.insert(part);
+                }
+            }
+        }
     }
 
     /// Adds straight ways over wide floor where the way along the others is much longer.
@@ -181,16 +264,41 @@ impl Sketch {
             .passages_of(region)
             .filter_map(|(number, _)| Some((number, *doors.get(&number)?)))
             .collect();
-        let middle = middle(ground.floor, ground.regions, region, &own.iter().map(|(_, place)| self.at(*place)).collect::<Vec<_>>());
         let is_car = ground.cars.contains(&region);
         let what = match ground.kinds.get(&region) {
             _ if is_car => What::Car(region),
             Some(RegionKind::Bay) => What::Bay(region),
             Some(RegionKind::Room | RegionKind::Ways) | None => What::Room(region),
         };
-        let center = self.add(middle, what);
-        for (_, door) in &own {
-            self.lead(ground.floor, *door, center, what);
+        let seen: Vec<Spot> = own.iter().map(|(_, place)| self.at(*place)).collect();
+        let center = self.add(middle(ground.floor, ground.regions, region, &seen), what);
+        let mut inside = vec![center];
+        if !is_car {
+            for spot in beside_middle(ground, region, &self.at(center)) {
+                let place = self.add(spot, what);
+                self.join(center, place);
+                inside.push(place);
+            }
+        }
+        for (number, door) in &own {
+            let Some(passage) = ground.regions.passages.get(*number) else { continue };
+            let at = self.at(*door);
+            let far = |place: &usize| {
+                let seen = is_straight(ground.floor, &at, &self.at(*place), LEAST_M);
+                (self.at(*place) - at).norm() + if seen { 0.0 } else { UNSEEN_M }
+            };
+            let mut near = inside.clone();
+            near.sort_by(|a, b| far(a).total_cmp(&far(b)).then(a.cmp(b)));
+            for (rank, place) in near.into_iter().enumerate() {
+                let (to, direct) = (self.at(place), (self.at(place) - at).norm());
+                let behind = (to - passage.throat.middle()).dot(&passage.throat.ahead) < 0.0;
+                let before = passage.throat.beyond(behind, BEFORE_M);
+                if rank == 0 {
+                    self.lead(ground.floor, *door, place, &before);
+                } else if is_straight(ground.floor, &at, &to, KEPT_M) && self.length_m(*door, place, ROUND * direct) > ROUND * direct {
+                    self.join(*door, place);
+                }
+            }
         }
         if is_car && let Some((number, _)) = own.first() {
             self.car(ground, region, *number, center);
@@ -216,15 +324,11 @@ impl Sketch {
         }
     }
 
-    /// Joins two places, with more places where the straight line is not free.
-    fn lead(&mut self, floor: &Floor, from: usize, to: usize, what: What) {
-        let (a, b) = (self.at(from), self.at(to));
-        if is_straight(floor, &a, &b, LEAST_M) {
-            self.join(from, to);
-            return;
-        }
-        let Some(path) = way(floor, &a, &b) else { return };
+    /// Leads a door to a place past a spot right before it, with more places where the way is not straight.
+    fn lead(&mut self, floor: &Floor, from: usize, to: usize, before: &Spot) {
+        let Some(path) = approach(floor, &self.at(from), before, &self.at(to)) else { return };
         let corners = spread(floor, &simplified(floor, &path));
+        let what = self.places.get(to).map_or(What::Corner, |place| place.what);
         self.chain(from, to, &corners, what);
     }
 
@@ -264,7 +368,7 @@ impl Sketch {
                     let knot = *knot.get_or_insert_with(|| {
                         network.add(free_middle(ground.floor, &passage.throat), Some(Held::Door(*number)))
                     });
-                    attach(ground, &mut network, knot, (region, passage.throat.beyond(behind, 0.3)));
+                    attach(ground, &mut network, knot, (region, passage.throat.beyond(behind, BEFORE_M)));
                 }
             }
         }
@@ -275,7 +379,7 @@ impl Sketch {
             let at_door = if let Some(Held::Door(passage)) = knot.held { doors.get(&passage).copied() } else { None };
             let place = match at_door {
                 Some(door) => door,
-                None => self.add(knot.at, What::Way),
+                None => self.add(free_near(ground.floor, &knot.at, LEAST_M, &|_| true).unwrap_or(knot.at), What::Way),
             };
             placed.insert(number, place);
         }
@@ -348,6 +452,27 @@ impl Sketch {
     }
 }
 
+/// One more place on each side of the middle of a long room.
+fn beside_middle(ground: &Ground<'_>, region: usize, middle: &Spot) -> Vec<Spot> {
+    let Some(known) = ground.regions.all.get(region) else { return Vec::new() };
+    let [wide, tall] = sides_m(ground.floor, known);
+    let along = if wide >= tall { Vector::x() } else { Vector::y() };
+    let corner = |cell: (usize, usize)| ground.floor.spot(cell).coords.dot(&along);
+    let (low, high) = (
+        corner((known.extent.columns.0, known.extent.rows.0)),
+        corner((known.extent.columns.1, known.extent.rows.1)),
+    );
+    let own = |spot: &Spot| ground.regions.of(ground.floor.cell(spot)) == Some(region);
+    let place = |end: f64| {
+        // Halfway between the middle and the end of the room, on its longer axis.
+        let off = (end - middle.coords.dot(&along)) * 0.6;
+        let spot = free_near(ground.floor, &(middle + along * off), KEPT_M, &own)?;
+        let apart = (spot - middle).norm() >= ROOM_STEP_M && is_straight(ground.floor, middle, &spot, LEAST_M);
+        apart.then_some(spot)
+    };
+    [low, high].into_iter().filter_map(place).collect()
+}
+
 /// Corners without those that are one with another; the first and the last stay.
 fn spread(floor: &Floor, corners: &[Spot]) -> Vec<Spot> {
     let mut out = corners.to_vec();
@@ -409,7 +534,7 @@ fn open_floor(ground: &Ground<'_>, network: &mut Network) {
             let spots = branch.path.iter().enumerate();
             near.extend(spots.map(|(place, spot)| ((spot - at).norm(), number, place)));
         }
-        join(floor, network, rim, near, &|spot| is_straight(floor, &at, spot, LEAST_M));
+        join(floor, network, (rim, &at), near, &|spot| is_straight(floor, &at, spot, LEAST_M));
     }
 }
 
@@ -424,7 +549,7 @@ fn dense(floor: &Floor, from: &Spot, to: &Spot) -> Vec<Spot> {
 fn join(
     floor: &Floor,
     network: &mut Network,
-    knot: usize,
+    (knot, before): (usize, &Spot),
     mut near: Vec<(f64, usize, usize)>,
     sees: &dyn Fn(&Spot) -> bool,
 ) -> bool {
@@ -436,15 +561,14 @@ fn join(
     });
     let Some((_, branch, place)) = seen.or_else(|| near.first()).copied() else { return false };
     let Some(other) = network.parted(branch, place) else { return false };
-    lead(floor, network, at, knot, other);
+    lead(floor, network, (at, *before), knot, other);
     true
 }
 
 /// A branch between two knots, straight or round something.
-fn lead(floor: &Floor, network: &mut Network, at: Spot, knot: usize, other: usize) {
+fn lead(floor: &Floor, network: &mut Network, (at, before): (Spot, Spot), knot: usize, other: usize) {
     let Some(to) = network.knots.get(other).map(|knot| knot.at).filter(|_| other != knot) else { return };
-    let path = if is_straight(floor, &at, &to, LEAST_M) { Some(vec![at, to]) } else { way(floor, &at, &to) };
-    if let Some(path) = path {
+    if let Some(path) = approach(floor, &at, &before, &to) {
         network.branches.push(Branch { ends: [knot, other], path });
     }
 }
@@ -463,12 +587,16 @@ fn attach(ground: &Ground<'_>, network: &mut Network, door: usize, (region, befo
         near.extend(spots.map(|(place, spot)| ((spot - before).norm(), number, place)));
     }
     // On this side of the door, which is closed on the clean map.
-    let sees = |spot: &Spot| floor.clean_line_m(&before, spot) > 0.0 && is_straight(floor, &at, spot, LEAST_M);
-    if !join(floor, network, door, near, &sees) {
+    let through = is_straight(floor, &at, &before, LEAST_M);
+    let sees = |spot: &Spot| {
+        let straight = is_straight(floor, &at, spot, LEAST_M);
+        floor.clean_line_m(&before, spot) > 0.0 && (straight || through && is_straight(floor, &before, spot, LEAST_M))
+    };
+    if !join(floor, network, (door, &before), near, &sees) {
         // A piece of floor without a way of its own.
         let middle = middle(floor, ground.regions, region, &[before]);
         let known = network.knots.iter().position(|knot| knot.held.is_none() && knot.at == middle);
         let knot = known.unwrap_or_else(|| network.add(middle, None));
-        lead(floor, network, at, door, knot);
+        lead(floor, network, (at, before), door, knot);
     }
 }

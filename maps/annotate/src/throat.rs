@@ -31,8 +31,10 @@ const SHOULDER_M: f64 = 0.2;
 /// A wall of a door goes on for at least this beside the opening, m, on one of its faces.
 const TONGUE_M: f64 = 0.45;
 /// The wall behind a jamb is measured so far from it, m: a wall in line with the opening has one thickness, a corner ever more, and
-/// a wall askew is left. How thick it may be there, m: a little farther on another wall may meet it.
-const OUTWARD_M: [(f64, f64); 3] = [(0.12, THIN_M), (0.25, THIN_M), (0.5, f64::INFINITY)];
+/// a wall askew is left. At the last one another wall may meet it.
+const OUTWARD_M: [f64; 3] = [0.12, 0.25, 0.5];
+/// Thicknesses that differ by less than this are one, m: what a cell makes of it.
+const EVEN_M: f64 = 0.12;
 /// Shoulders are measured up to so far, m.
 const BESIDE_M: f64 = 1.2;
 /// Step along and across a throat, m.
@@ -124,10 +126,11 @@ impl Throat {
         if most < SHOULDER_M {
             return Jamb::Flush;
         }
-        let thin = OUTWARD_M.iter().all(|(off_m, most_m)| {
-            let thick_m = thickness_m(floor, &(at + out * *off_m), &self.ahead);
-            thick_m > 0.0 && thick_m <= *most_m
-        });
+        let thick_m = OUTWARD_M.map(|off_m| thickness_m(floor, &(at + out * off_m), &self.ahead));
+        let [near_m, next_m, far_m] = thick_m;
+        // A thick wall has two faces that are as far apart as the opening is deep.
+        let even = (next_m - near_m).abs() <= EVEN_M && next_m <= DEEPEST_M && (next_m - self.depth_m()).abs() <= 2.0 * EVEN_M;
+        let thin = near_m > 0.0 && next_m > 0.0 && far_m > 0.0 && (near_m.max(next_m) <= THIN_M || even);
         match (thin, least >= SHOULDER_M) {
             (true, _) => Jamb::End { tongue_m: least },
             (false, false) => Jamb::Step,

@@ -56,6 +56,21 @@ pub(crate) fn simplified(floor: &Floor, path: &[Spot]) -> Vec<Spot> {
     out
 }
 
+/// The way from a door, or from any other spot, past a spot straight before it.
+pub(crate) fn approach(floor: &Floor, from: &Spot, before: &Spot, to: &Spot) -> Option<Vec<Spot>> {
+    if is_straight(floor, from, to, LEAST_M) {
+        return Some(vec![*from, *to]);
+    }
+    if before == from || !is_straight(floor, from, before, LEAST_M) {
+        return way(floor, from, to);
+    }
+    // Through a narrow door the way is straight, whatever the cells beside it say.
+    if is_straight(floor, before, to, LEAST_M) {
+        return Some(vec![*from, *before, *to]);
+    }
+    way(floor, before, to).map(|path| [*from].into_iter().chain(path).collect())
+}
+
 /// The way of the robot between two spots over the map as it is, cell by cell; `None` where it does not get there nearby.
 #[expect(
     clippy::cast_possible_truncation,
