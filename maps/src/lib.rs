@@ -45,6 +45,6 @@ pub use generate::generate;
 pub use geodesic::Geodesic;
 pub use ground::{Ground, Kept};
 pub use layer::Layer;
-pub use read::{load, load_map, parse};
+pub use read::{MapWithFiles, load, load_map, load_raw, parse};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

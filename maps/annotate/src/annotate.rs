@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 use socrates_maps::Layer;
 use socrates_model::{
-    Cell as Kind, Door, DoorKind, DoorOpens, Fault, FaultCode, GraphEdge, GraphNode, Grid, NodeId, Point, SceneGraph, Where,
+    Cell as Kind, Door, DoorKind, DoorOpens, Fault, FaultCode, GraphEdge, GraphNode, Grid, NodeId, Point, SceneGraph,
+    Where,
 };
 
 use crate::cells::height;
@@ -93,7 +94,8 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
     let grid = &within(grid, &options.within)?;
     let mut remarks = Vec::new();
     if grid.resolution_m > COARSE_M {
-        let text = format!("cells of {} m are too coarse for doorways; a map of 0.05 to 0.1 m shows them", grid.resolution_m);
+        let text =
+            format!("cells of {} m are too coarse for doorways; a map of 0.05 to 0.1 m shows them", grid.resolution_m);
         remarks.push(Remark::new(RemarkKind::Coarse, None, text));
     }
     let mut floor = Floor::of(grid, &mut remarks);
@@ -126,7 +128,8 @@ pub fn annotate(grid: &Grid, options: &Options) -> Result<Annotation, Vec<Fault>
         remarks.push(Remark::new(RemarkKind::Elevator, at, text));
     }
     let open = Open::of(&floor, &ways);
-    let ground = Ground { floor: &floor, regions: &regions, kinds: &kinds, cars: &cars, skeleton: &skeleton, open: &open };
+    let ground =
+        Ground { floor: &floor, regions: &regions, kinds: &kinds, cars: &cars, skeleton: &skeleton, open: &open };
     let mut sketch = Sketch::of(&ground);
     one_piece(&mut sketch, &mut remarks);
     let mut made = written(grid, &Naming::new(&floor, &regions, &sketch, &elevators));
@@ -204,7 +207,9 @@ fn within(grid: &Grid, corners: &[Point]) -> Result<Grid, Vec<Fault>> {
         let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
         let ends = pixels.iter().zip(pixels.iter().cycle().skip(1));
         // An odd number of sides lies to the right.
-        ends.filter(|((ax, ay), (bx, by))| (*ay > y) != (*by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax).count() % 2 == 1
+        ends.filter(|((ax, ay), (bx, by))| (*ay > y) != (*by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax).count()
+            % 2
+            == 1
     };
     for row in 0..grid.height {
         for column in 0..grid.width {
@@ -215,7 +220,11 @@ fn within(grid: &Grid, corners: &[Point]) -> Result<Grid, Vec<Fault>> {
             }
         }
     }
-    if cut.cells.contains(&Kind::Free) { Ok(cut) } else { Err(wrong("the polygon holds no free cell of the map".to_owned())) }
+    if cut.cells.contains(&Kind::Free) {
+        Ok(cut)
+    } else {
+        Err(wrong("the polygon holds no free cell of the map".to_owned()))
+    }
 }
 
 /// The region at a point of the options.
@@ -302,7 +311,8 @@ fn elevators(
         let region = region_at(grid, floor, regions, point, "elevator")?;
         let doors = regions.passages_of(region).count();
         if doors == 0 || !kept.contains(&region) {
-            let why = if doors == 0 { "its floor has no doorway" } else { "its floor is not the one that is annotated" };
+            let why =
+                if doors == 0 { "its floor has no doorway" } else { "its floor is not the one that is annotated" };
             let message = format!("({}, {}) m is in no elevator: {why}", point.x, point.y);
             return Err(vec![Fault::new(FaultCode::MValue, Where::key("elevator"), message)]);
         }
@@ -321,7 +331,10 @@ fn left_out(floor: &Floor, regions: &Regions, kept: &BTreeSet<usize>, remarks: &
         }
         let spot = roomiest(floor, region);
         if region.outside {
-            let text = format!("{:.0} m² of free floor round the building have no nodes; `--keep X,Y` with a point there annotates them", region.area_m2);
+            let text = format!(
+                "{:.0} m² of free floor round the building have no nodes; `--keep X,Y` with a point there annotates them",
+                region.area_m2
+            );
             remarks.push(Remark::new(RemarkKind::Outside, Some(spot), text));
         } else {
             lost.push((region.area_m2, spot));
@@ -351,7 +364,8 @@ fn one_piece(sketch: &mut Sketch, remarks: &mut Vec<Remark>) {
     let lost: Vec<Spot> =
         sketch.places.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(place, _)| place.at).collect();
     for spot in lost.iter().take(NAMED_MOST) {
-        let text = "a place here was given up: no straight way of the robot's width joins it with the others".to_owned();
+        let text =
+            "a place here was given up: no straight way of the robot's width joins it with the others".to_owned();
         remarks.push(Remark::new(RemarkKind::Unreached, Some(*spot), text));
     }
     let mut number = 0;
@@ -374,14 +388,20 @@ fn one_piece(sketch: &mut Sketch, remarks: &mut Vec<Remark>) {
 
 /// Says which doors are doubtful, which gaps are too narrow, and whether the map is one floor.
 fn doubts(floor: &Floor, regions: &Regions, made: &Annotation, remarks: &mut Vec<Remark>) {
-    let doubtful =
-        regions.passages.iter().filter(|passage| passage.throat.opening == Opening::Door && passage.throat.confidence() < DOUBTFUL);
+    let doubtful = regions
+        .passages
+        .iter()
+        .filter(|passage| passage.throat.opening == Opening::Door && passage.throat.confidence() < DOUBTFUL);
     for passage in doubtful.take(NAMED_MOST) {
-        let text = format!("an opening of {:.2} m is taken for a doorway with little confidence", passage.throat.width_m);
+        let text =
+            format!("an opening of {:.2} m is taken for a doorway with little confidence", passage.throat.width_m);
         remarks.push(Remark::new(RemarkKind::Doubtful, Some(passage.throat.middle()), text));
     }
     for gap in regions.gaps.iter().take(NAMED_MOST) {
-        let text = format!("an opening of {:.2} m is too narrow for a robot of {BODY_M} m radius and has no nodes", gap.width_m);
+        let text = format!(
+            "an opening of {:.2} m is too narrow for a robot of {BODY_M} m radius and has no nodes",
+            gap.width_m
+        );
         remarks.push(Remark::new(RemarkKind::Gap, Some(gap.middle()), text));
     }
     if made.counts.doors == 0 && made.counts.rooms == 0 {
@@ -415,11 +435,8 @@ fn written(grid: &Grid, naming: &Naming<'_>) -> Annotation {
         confidence.push((sure * 100.0).round() / 100.0);
     }
     let rank = |place: &usize| order.iter().position(|other| other == place);
-    let mut ways: Vec<[usize; 2]> = sketch
-        .ways
-        .iter()
-        .map(|[a, b]| if rank(a) <= rank(b) { [*a, *b] } else { [*b, *a] })
-        .collect();
+    let mut ways: Vec<[usize; 2]> =
+        sketch.ways.iter().map(|[a, b]| if rank(a) <= rank(b) { [*a, *b] } else { [*b, *a] }).collect();
     ways.sort_by_key(|[a, b]| (rank(a), rank(b)));
     let edge = |way: &[usize; 2]| {
         let (from, to) = ids.get(&way[0]).cloned().zip(ids.get(&way[1]).cloned())?;
@@ -428,7 +445,11 @@ fn written(grid: &Grid, naming: &Naming<'_>) -> Annotation {
     let edges: Vec<GraphEdge> = ways.iter().filter_map(edge).collect();
     let doors = doors(grid, naming, &ids);
     let count = |class: &str| kinds.iter().filter(|(kind, _)| kind == class).count();
-    let rooms: BTreeSet<usize> = sketch.places.iter().filter_map(|place| if let What::Room(region) = place.what { Some(region) } else { None }).collect();
+    let rooms: BTreeSet<usize> = sketch
+        .places
+        .iter()
+        .filter_map(|place| if let What::Room(region) = place.what { Some(region) } else { None })
+        .collect();
     let counts = Counts {
         doors: sketch.places.iter().filter(|place| matches!(place.what, What::Door(_))).count(),
         rooms: rooms.len(),
@@ -448,7 +469,12 @@ fn doors(grid: &Grid, naming: &Naming<'_>, ids: &BTreeMap<usize, NodeId>) -> Vec
     let places = &naming.sketch.places;
     let inside = |region: usize| -> Vec<NodeId> {
         let own = |what: What| matches!(what, What::Room(other) | What::Car(other) if other == region);
-        places.iter().enumerate().filter(|(_, place)| own(place.what)).filter_map(|(at, _)| ids.get(&at).cloned()).collect()
+        places
+            .iter()
+            .enumerate()
+            .filter(|(_, place)| own(place.what))
+            .filter_map(|(at, _)| ids.get(&at).cloned())
+            .collect()
     };
     let mut doors = Vec::new();
     for (at, place) in places.iter().enumerate() {

@@ -56,7 +56,8 @@ impl Floor {
     /// The floor of a grid; what was left out of it goes to the remarks.
     pub(crate) fn of(grid: &Grid, remarks: &mut Vec<Remark>) -> Self {
         let raw = DistanceField::new(grid);
-        let stride = if grid.resolution_m > WORKING_M * 0.8 { 1 } else { (WORKING_M / grid.resolution_m + 1e-9) as usize };
+        let stride =
+            if grid.resolution_m > WORKING_M * 0.8 { 1 } else { (WORKING_M / grid.resolution_m + 1e-9) as usize };
         let mut floor = Self {
             map_cell_m: grid.resolution_m,
             cell_m: grid.resolution_m * stride as f64,
@@ -138,8 +139,7 @@ impl Floor {
         let most = (DUST_M2 / (self.map_cell_m * self.map_cell_m) + 1e-6).max(1.0) as usize;
         let (numbers, found) = parts(&blocked, &ROUND);
         let size = (grid.width, grid.height);
-        let is_dust: Vec<bool> =
-            found.iter().map(|part| part.cells <= most && !part.extent.is_at_rim(size)).collect();
+        let is_dust: Vec<bool> = found.iter().map(|part| part.cells <= most && !part.extent.is_at_rim(size)).collect();
         let specks = is_dust.iter().filter(|dust| **dust).count();
         if specks == 0 {
             return false;
@@ -265,7 +265,9 @@ impl Floor {
     fn least_on_line(&self, from: &Spot, to: &Spot, clearance: impl Fn(&Spot) -> f64) -> f64 {
         let along = to - from;
         let steps = (along.norm() / (0.5 * self.map_cell_m.max(0.02))).ceil().clamp(1.0, 1e5) as u32;
-        (0..=steps).map(|step| clearance(&(from + along * (f64::from(step) / f64::from(steps))))).fold(f64::INFINITY, f64::min)
+        (0..=steps)
+            .map(|step| clearance(&(from + along * (f64::from(step) / f64::from(steps)))))
+            .fold(f64::INFINITY, f64::min)
     }
 }
 

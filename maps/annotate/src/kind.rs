@@ -73,9 +73,10 @@ pub(crate) fn sides_m(floor: &Floor, region: &Region) -> [f64; 2] {
 /// Whether a mouth leads from a way to a bay, and not to a way that goes on: its region is compact.
 pub(crate) fn is_bay(floor: &Floor, regions: &Regions, passage: &Passage) -> bool {
     let Opening::Mouth(behind) = passage.throat.opening else { return true };
-    let region = regions.all.get(passage.sides[usize::from(behind)]);
-    let way = passage.sides[usize::from(!behind)];
-    passage.sides[0] != passage.sides[1]
+    let [before, beyond] = passage.sides;
+    let (bay, way) = if behind { (beyond, before) } else { (before, beyond) };
+    let region = regions.all.get(bay);
+    bay != way
         && region.is_some_and(|region| {
             region.area_m2 <= ROOM_MOST_M2 && aspect(region) <= BAY_ASPECT && region.area_m2 >= BAY_LEAST_M2
         })

@@ -26,8 +26,8 @@ mod region;
 mod remark;
 pub mod score;
 mod sketch;
-mod things;
 mod thin;
+mod things;
 mod throat;
 mod way;
 

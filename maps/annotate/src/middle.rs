@@ -13,13 +13,20 @@ const LATTICE_M: f64 = 0.25;
 const ROOMY_M: f64 = 1.0;
 
 /// Where somebody stands who is in the middle of a region: roomy, near the middle of its floor, in sight of its doors.
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a map")]
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "cells of a map"
+)]
 pub(crate) fn middle(floor: &Floor, regions: &Regions, region: usize, doors: &[Spot]) -> Spot {
     let Some(known) = regions.all.get(region) else { return Spot::origin() };
     let every = ((LATTICE_M / floor.cell_m) as usize).max(1);
     let cells: Vec<Cell> = (known.extent.rows.0..=known.extent.rows.1)
         .step_by(every)
-        .flat_map(|row| (known.extent.columns.0..=known.extent.columns.1).step_by(every).map(move |column| (column, row)))
+        .flat_map(|row| {
+            (known.extent.columns.0..=known.extent.columns.1).step_by(every).map(move |column| (column, row))
+        })
         .chain([known.roomiest])
         .filter(|cell| regions.of(*cell) == Some(region))
         .collect();

@@ -107,11 +107,16 @@ impl<'a> Naming<'a> {
                 let slim = self.regions.all.get(region).map_or(1.0, aspect);
                 told("ROOM", least * (1.2 - 0.1 * slim).clamp(0.6, 1.0))
             }
+            What::Bay(_) if self.is_lobby(place) => told("ELEVATOR LOBBY", 1.0),
             What::Bay(_) => told("OPEN AREA", 0.85),
             What::Car(region) => (self.elevator(region), 1.0),
             What::Mouth | What::Way | What::Corner if self.is_lobby(place) => told("ELEVATOR LOBBY", 1.0),
             What::Mouth | What::Way | What::Corner if degree >= 3 => {
-                if clear_m > OPEN_M { told("OPEN AREA", sure(clear_m, OPEN_M)) } else { told("INTERSECTION", 0.9) }
+                if clear_m > OPEN_M {
+                    told("OPEN AREA", sure(clear_m, OPEN_M))
+                } else {
+                    told("INTERSECTION", 0.9)
+                }
             }
             What::Mouth | What::Way | What::Corner if degree <= 1 => {
                 if clear_m > BAY_M {

@@ -25,7 +25,7 @@ const SLOPE_M: f64 = 0.35;
 /// A way is looked at in so many places.
 const BEHIND_PARTS: usize = 12;
 /// A way behind furniture has walls within so many steps of 0.1 m on both sides.
-const BEHIND_STEPS: u32 = 9;
+const BEHIND_STEPS: u32 = 7;
 /// What is led to a way over open floor ends at a place of it this near along it, m.
 const ONE_PLACE_M: f64 = 1.6;
 /// Passes of clearing at most: each shortens what is left.
@@ -169,7 +169,8 @@ impl Network {
                 Some(flag) if !*flag => *flag = true,
                 Some(_) | None => continue,
             }
-            let others = self.branches.iter().enumerate().filter(|(at, other)| *at != branch && other.ends.contains(&knot));
+            let others =
+                self.branches.iter().enumerate().filter(|(at, other)| *at != branch && other.ends.contains(&knot));
             open.extend(others.flat_map(|(_, other)| other.ends));
         }
         from == to || seen.get(to) == Some(&true)
@@ -241,7 +242,9 @@ impl Network {
             (length_m(piece) <= most_m).then_some(knot)
         };
         let (to_first, to_last) = (near(first, before), near(last, after));
-        if let Some(knot) = if length_m(before) <= length_m(after) { to_first.or(to_last) } else { to_last.or(to_first) } {
+        if let Some(knot) =
+            if length_m(before) <= length_m(after) { to_first.or(to_last) } else { to_last.or(to_first) }
+        {
             return Some(knot);
         }
         let (before, after) = (before.to_vec(), after.to_vec());
@@ -274,7 +277,9 @@ impl Network {
                 continue;
             }
             let take = |slots: &mut Vec<Option<Branch>>, at: usize| slots.get_mut(at).and_then(Option::take);
-            let (Some(mut one), Some(mut other)) = (take(&mut slots, first), take(&mut slots, second)) else { continue };
+            let (Some(mut one), Some(mut other)) = (take(&mut slots, first), take(&mut slots, second)) else {
+                continue;
+            };
             if one.ends[1] != knot {
                 one = one.reversed();
             }
@@ -314,7 +319,8 @@ impl Network {
             let Some(branch) = self.branches.get(at) else { continue };
             let [a, b] = branch.ends.map(|end| found(&onto, end));
             // Each junction takes part once a pass, so that a row of them does not run together.
-            let fresh = branch.ends == [a, b] && !onto.iter().enumerate().any(|(from, to)| from != *to && (*to == a || *to == b));
+            let fresh = branch.ends == [a, b]
+                && !onto.iter().enumerate().any(|(from, to)| from != *to && (*to == a || *to == b));
             if a == b || !fresh {
                 continue;
             }
@@ -366,7 +372,7 @@ impl Network {
     }
 }
 
-/// Whether a way is narrow and has furniture on one side and a wall on the other, for an eighth of it.
+/// Whether a way is narrow and has furniture on one side and a wall on the other, for a third of it.
 fn is_behind_furniture(floor: &Floor, path: &[Spot]) -> bool {
     let one_sided = |part: &usize| {
         let place = path.len() * part / BEHIND_PARTS;
@@ -381,7 +387,7 @@ fn is_behind_furniture(floor: &Floor, path: &[Spot]) -> bool {
         };
         matches!((side(1.0), side(-1.0)), (Some(one), Some(other)) if one != other)
     };
-    path.len() > 2 * BEHIND_PARTS && (1..BEHIND_PARTS).filter(one_sided).count() * 8 >= BEHIND_PARTS
+    path.len() > 2 * BEHIND_PARTS && (1..BEHIND_PARTS).filter(one_sided).count() * 3 >= BEHIND_PARTS
 }
 
 /// How many places at the beginning of a way lie where it runs into a corner; at least two stay.
@@ -474,9 +480,10 @@ impl Tracer<'_> {
                 }
             }
         }
-        let roomiest = all.iter().copied().max_by(|a, b| {
-            self.floor.clear_of(*a).total_cmp(&self.floor.clear_of(*b)).then(b.cmp(a))
-        });
+        let roomiest = all
+            .iter()
+            .copied()
+            .max_by(|a, b| self.floor.clear_of(*a).total_cmp(&self.floor.clear_of(*b)).then(b.cmp(a)));
         let at = self.floor.spot(roomiest.unwrap_or(first));
         self.made.knots.push(Knot { at, held: None });
     }

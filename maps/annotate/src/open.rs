@@ -37,7 +37,12 @@ pub(crate) struct Open {
     pub(crate) lattices: Vec<Lattice>,
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "cells of a map")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "cells of a map"
+)]
 impl Open {
     /// The open floor of the cells of ways.
     pub(crate) fn of(floor: &Floor, ways: &Layer<bool>) -> Self {

@@ -140,10 +140,12 @@ fn grown(floor: &Floor, of_cell: &Layer<u32>, throats: &[Throat]) -> Layer<u32> 
         for column in 0..of_cell.width {
             let cell = (column, row);
             let own = of_cell.get(column, row).unwrap_or(0);
-            let at_rim = || SIDES.iter().any(|way| {
-                let next = step(cell, *way);
-                of_cell.get(next.0, next.1) == Some(0)
-            });
+            let at_rim = || {
+                SIDES.iter().any(|way| {
+                    let next = step(cell, *way);
+                    of_cell.get(next.0, next.1) == Some(0)
+                })
+            };
             if own > 0 && at_rim() {
                 rim.push(cell);
             }
@@ -209,7 +211,8 @@ fn joined(passages: &mut Vec<(Throat, [usize; 2])>, areas: &[f64]) -> Joined {
 /// Extent, roomiest place and place at the rim of each region; areas are added by the caller.
 #[expect(clippy::cast_precision_loss, reason = "cells of a map")]
 fn measured(floor: &Floor, of_cell: &Layer<u32>, count: usize) -> Vec<Region> {
-    let none = Region { extent: Extent::NONE, area_m2: 0.0, roomiest: (0, 0), clear_m: 0.0, bare_m: 0.0, outside: false };
+    let none =
+        Region { extent: Extent::NONE, area_m2: 0.0, roomiest: (0, 0), clear_m: 0.0, bare_m: 0.0, outside: false };
     let mut all = vec![none; count];
     let (width, rows) = floor.size();
     for row in 0..rows {

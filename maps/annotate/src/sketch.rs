@@ -194,7 +194,8 @@ impl Sketch {
         for b in 0..self.places.len() {
             for a in 0..b {
                 let length = (self.at(a) - self.at(b)).norm();
-                let walked = |at: usize| self.places.get(at).is_some_and(|place| matches!(place.what, What::Way | What::Corner));
+                let walked =
+                    |at: usize| self.places.get(at).is_some_and(|place| matches!(place.what, What::Way | What::Corner));
                 if length <= SHORTCUT_MOST_M && walked(a) && walked(b) {
                     pairs.push((length, [a, b]));
                 }
@@ -205,7 +206,9 @@ impl Sketch {
             let (from, to) = (self.at(a), self.at(b));
             let crosses = || {
                 self.ways.iter().any(|way| {
-                    !way.contains(&a) && !way.contains(&b) && segments_cross(&from, &to, &self.at(way[0]), &self.at(way[1]))
+                    !way.contains(&a)
+                        && !way.contains(&b)
+                        && segments_cross(&from, &to, &self.at(way[0]), &self.at(way[1]))
                 })
             };
             let floor = ground.floor;
@@ -259,11 +262,8 @@ impl Sketch {
 
     /// A place in the middle of a room and ways from it to its doors.
     fn room(&mut self, ground: &Ground<'_>, region: usize, doors: &BTreeMap<usize, usize>) {
-        let own: Vec<(usize, usize)> = ground
-            .regions
-            .passages_of(region)
-            .filter_map(|(number, _)| Some((number, *doors.get(&number)?)))
-            .collect();
+        let own: Vec<(usize, usize)> =
+            ground.regions.passages_of(region).filter_map(|(number, _)| Some((number, *doors.get(&number)?))).collect();
         let is_car = ground.cars.contains(&region);
         let what = match ground.kinds.get(&region) {
             _ if is_car => What::Car(region),
@@ -295,7 +295,9 @@ impl Sketch {
                 let before = passage.throat.beyond(behind, BEFORE_M);
                 if rank == 0 {
                     self.lead(ground.floor, *door, place, &before);
-                } else if is_straight(ground.floor, &at, &to, KEPT_M) && self.length_m(*door, place, ROUND * direct) > ROUND * direct {
+                } else if is_straight(ground.floor, &at, &to, KEPT_M)
+                    && self.length_m(*door, place, ROUND * direct) > ROUND * direct
+                {
                     self.join(*door, place);
                 }
             }
@@ -458,10 +460,8 @@ fn beside_middle(ground: &Ground<'_>, region: usize, middle: &Spot) -> Vec<Spot>
     let [wide, tall] = sides_m(ground.floor, known);
     let along = if wide >= tall { Vector::x() } else { Vector::y() };
     let corner = |cell: (usize, usize)| ground.floor.spot(cell).coords.dot(&along);
-    let (low, high) = (
-        corner((known.extent.columns.0, known.extent.rows.0)),
-        corner((known.extent.columns.1, known.extent.rows.1)),
-    );
+    let (low, high) =
+        (corner((known.extent.columns.0, known.extent.rows.0)), corner((known.extent.columns.1, known.extent.rows.1)));
     let own = |spot: &Spot| ground.regions.of(ground.floor.cell(spot)) == Some(region);
     let place = |end: f64| {
         // Halfway between the middle and the end of the room, on its longer axis.
@@ -518,7 +518,9 @@ fn open_floor(ground: &Ground<'_>, network: &mut Network) {
         let knots: Vec<usize> = lattice.spots.iter().map(|spot| network.add(*spot, Some(Held::Open))).collect();
         for way in &lattice.ways {
             let [Some(from), Some(to)] = way.map(|end| knots.get(end).copied()) else { continue };
-            let [Some(a), Some(b)] = [from, to].map(|knot| network.knots.get(knot).map(|knot| knot.at)) else { continue };
+            let [Some(a), Some(b)] = [from, to].map(|knot| network.knots.get(knot).map(|knot| knot.at)) else {
+                continue;
+            };
             network.branches.push(Branch { ends: [from, to], path: dense(floor, &a, &b) });
         }
     }

@@ -17,7 +17,12 @@ pub(crate) struct Things {
     is_thing: Vec<bool>,
 }
 
-#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a map")]
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "cells of a map"
+)]
 impl Things {
     /// The things of a grid.
     pub(crate) fn of(grid: &Grid) -> Self {

@@ -129,7 +129,8 @@ impl Throat {
         let thick_m = OUTWARD_M.map(|off_m| thickness_m(floor, &(at + out * off_m), &self.ahead));
         let [near_m, next_m, far_m] = thick_m;
         // A thick wall has two faces that are as far apart as the opening is deep.
-        let even = (next_m - near_m).abs() <= EVEN_M && next_m <= DEEPEST_M && (next_m - self.depth_m()).abs() <= 2.0 * EVEN_M;
+        let even =
+            (next_m - near_m).abs() <= EVEN_M && next_m <= DEEPEST_M && (next_m - self.depth_m()).abs() <= 2.0 * EVEN_M;
         let thin = near_m > 0.0 && next_m > 0.0 && far_m > 0.0 && (near_m.max(next_m) <= THIN_M || even);
         match (thin, least >= SHOULDER_M) {
             (true, _) => Jamb::End { tongue_m: least },
@@ -186,7 +187,8 @@ impl Throat {
 pub(crate) fn openings(floor: &Floor, spots: &[Spot]) -> Vec<Throat> {
     let between_walls = |throat: &Throat| {
         let outward = (throat.to - throat.from).normalize() * (2.0 * floor.map_cell_m);
-        !floor.things.holds(floor.pixel(&(throat.from - outward))) && !floor.things.holds(floor.pixel(&(throat.to + outward)))
+        !floor.things.holds(floor.pixel(&(throat.from - outward)))
+            && !floor.things.holds(floor.pixel(&(throat.to + outward)))
     };
     let sense = |spot: &Spot| floor.clean_m(spot);
     let probed = spots.iter().filter_map(|spot| probe(&sense, spot, WIDEST_OPEN_M)).filter_map(|throat| {
@@ -200,7 +202,10 @@ pub(crate) fn openings(floor: &Floor, spots: &[Spot]) -> Vec<Throat> {
 fn best(mut found: Vec<Throat>) -> Vec<Throat> {
     found.sort_by(|a, b| {
         let wide = |throat: &Throat| throat.opening == Opening::Wide;
-        let order = wide(a).cmp(&wide(b)).then(b.shoulder_count().cmp(&a.shoulder_count())).then(a.width_m.total_cmp(&b.width_m));
+        let order = wide(a)
+            .cmp(&wide(b))
+            .then(b.shoulder_count().cmp(&a.shoulder_count()))
+            .then(a.width_m.total_cmp(&b.width_m));
         order.then(a.from.x.total_cmp(&b.from.x)).then(a.from.y.total_cmp(&b.from.y))
     });
     let mut kept: Vec<Throat> = Vec::new();
@@ -246,7 +251,8 @@ fn probe(sense: Sense<'_>, spot: &Spot, widest_m: f64) -> Option<Throat> {
     let width_m = left + right;
     let (from, to) = (middle - along * (0.5 * width_m), middle + along * (0.5 * width_m));
     let ahead = Vector::new(-along.y, along.x);
-    let mut throat = Throat { from, to, width_m, opening: Opening::Door, ahead, reach_m: (0.0, 0.0), shoulders: [0.0; 4] };
+    let mut throat =
+        Throat { from, to, width_m, opening: Opening::Door, ahead, reach_m: (0.0, 0.0), shoulders: [0.0; 4] };
     let before = end(sense, &middle, &along, &ahead, width_m)?;
     let behind = end(sense, &middle, &along, &-ahead, width_m)?;
     throat.reach_m = (before.0, behind.0);

@@ -72,11 +72,7 @@ pub(crate) fn approach(floor: &Floor, from: &Spot, before: &Spot, to: &Spot) -> 
 }
 
 /// The way of the robot between two spots over the map as it is, cell by cell; `None` where it does not get there nearby.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "cells of a map, far below 2^32"
-)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cells of a map, far below 2^32")]
 pub(crate) fn way(floor: &Floor, from: &Spot, to: &Spot) -> Option<Vec<Spot>> {
     let (start, goal) = (floor.cell(from), floor.cell(to));
     let (width, height) = floor.size();

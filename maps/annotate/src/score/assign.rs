@@ -30,7 +30,8 @@ pub(super) fn matched(ones: &[Point], others: &[Point], within_m: f64) -> Vec<(u
                 if used.get(column) != Some(&false) {
                     continue;
                 }
-                let rises = rise_of_row.get(row).copied().unwrap_or(0.0) + rise_of_column.get(column).copied().unwrap_or(0.0);
+                let rises =
+                    rise_of_row.get(row).copied().unwrap_or(0.0) + rise_of_column.get(column).copied().unwrap_or(0.0);
                 let reduced = cost(row, column) - rises;
                 if let (Some(known), Some(back)) = (least.get_mut(column), from.get_mut(column)) {
                     if reduced < *known {
@@ -117,11 +118,11 @@ mod tests {
             let mut best = (0, 0.0);
             // Every row takes a free column or none.
             let mut open: Vec<Vec<(usize, usize)>> = vec![vec![]];
-            for row in 0..4 {
+            for (row, from) in a.iter().enumerate() {
                 let mut more = open.clone();
                 for taken in &open {
                     for column in (0..5).filter(|c| taken.iter().all(|(_, used)| used != c)) {
-                        if (a[row] - b[column]).norm() <= 1.5 {
+                        if (from - b[column]).norm() <= 1.5 {
                             more.push(taken.iter().copied().chain([(row, column)]).collect());
                         }
                     }

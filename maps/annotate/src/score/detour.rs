@@ -54,21 +54,23 @@ pub(super) fn detours(first: &Location, second: &Location) -> Detours {
         }
     }
     ratios.sort_by(f64::total_cmp);
-    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a list")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a list"
+    )]
     let at = |share: f64| ratios.get((share * ratios.len().saturating_sub(1) as f64).round() as usize).copied();
-    Detours {
-        pairs: ratios.len() + unreached,
-        unreached,
-        p50: at(0.5).unwrap_or(0.0),
-        p95: at(0.95).unwrap_or(0.0),
-    }
+    Detours { pairs: ratios.len() + unreached, unreached, p50: at(0.5).unwrap_or(0.0), p95: at(0.95).unwrap_or(0.0) }
 }
 
 fn walked(a: &Entry, b: &Entry, lengths: &[Vec<f64>]) -> f64 {
     let direct = if a.edge == b.edge { (a.along_m - b.along_m).abs() } else { f64::INFINITY };
     let over = a.ends.iter().flat_map(|(from, out)| {
         let row = lengths.get(*from);
-        b.ends.iter().map(move |(to, into)| out + into + row.and_then(|row| row.get(*to)).copied().unwrap_or(f64::INFINITY))
+        b.ends
+            .iter()
+            .map(move |(to, into)| out + into + row.and_then(|row| row.get(*to)).copied().unwrap_or(f64::INFINITY))
     });
     a.off_m + b.off_m + over.fold(direct, f64::min)
 }

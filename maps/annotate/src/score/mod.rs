@@ -42,10 +42,18 @@ pub struct Agreement {
 impl Agreement {
     #[expect(clippy::cast_precision_loss, reason = "a graph has far fewer than 2^53 nodes")]
     fn of(first: usize, second: usize, matched: usize) -> Self {
-        let share = |of: usize| if of == 0 { f64::from(u8::from(first + second == 0)) } else { matched as f64 / of as f64 };
+        let share =
+            |of: usize| if of == 0 { f64::from(u8::from(first + second == 0)) } else { matched as f64 / of as f64 };
         let (precision, recall) = (share(second), share(first));
         let both = precision + recall;
-        Self { first, second, matched, precision, recall, f1: if both > 0.0 { 2.0 * precision * recall / both } else { 0.0 } }
+        Self {
+            first,
+            second,
+            matched,
+            precision,
+            recall,
+            f1: if both > 0.0 { 2.0 * precision * recall / both } else { 0.0 },
+        }
     }
 }
 
@@ -87,7 +95,9 @@ pub fn score(first: &Location, second: &Location) -> Score {
     let (all, all_second) = (points(first, |_| true), points(second, |_| true));
     let pairs = assign::matched(&spots(&all), &spots(&all_second), PLACE_M);
     let same = pairs.iter().filter(|(a, b)| {
-        let class = |location: &Location, list: &[(usize, Point)], at: usize| list.get(at).map(|(node, _)| class(location, *node));
+        let class = |location: &Location, list: &[(usize, Point)], at: usize| {
+            list.get(at).map(|(node, _)| class(location, *node))
+        };
         class(first, &all, *a) == class(second, &all_second, *b)
     });
     #[expect(clippy::cast_precision_loss, reason = "a graph has far fewer than 2^53 nodes")]
