@@ -16,7 +16,7 @@ const BAY_ASPECT: f64 = 2.2;
 const BAY_LEAST_M2: f64 = 6.0;
 /// Doors from which on a slim region is a corridor.
 const CORRIDOR_DOORS: usize = 3;
-/// Sides of an elevator car, m: ADA 2010 §407.4 asks for 1.7 by 1.3 m, cars for beds have 1.8 by 2.7 m.
+/// Sides of an elevator car, m: ADA standards of 2010, 407.4, ask for 1.7 by 1.3 m; cars for beds have 1.8 by 2.7 m.
 const CAR_M: (f64, f64) = (1.05, 3.0);
 /// Widest door of an elevator, m.
 const CAR_DOOR_M: f64 = 1.85;

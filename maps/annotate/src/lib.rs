@@ -14,6 +14,7 @@
 //! edges and nodes lie where the simulation lets people walk.
 
 mod annotate;
+mod attach;
 mod cells;
 mod files;
 mod floor;
@@ -24,6 +25,7 @@ mod network;
 mod open;
 mod region;
 mod remark;
+mod repair;
 pub mod score;
 mod sketch;
 mod thin;

@@ -11,7 +11,7 @@ use crate::sketch::{NARROW_M, Sketch, What};
 const OPEN_M: f64 = 2.2;
 /// The end of a way with more clearance than this is a bay, m.
 const BAY_M: f64 = 1.7;
-/// A doorway narrower than this is narrow, m: ADA 2010 §404.2.3 asks for 0.82 m of free width.
+/// A doorway narrower than this is narrow, m: ADA standards of 2010, 404.2.3, ask for 0.82 m of free width.
 const NARROW_DOOR_M: f64 = 0.9;
 /// Least turn of a way that is a corner, rad.
 const CORNER_RAD: f64 = 0.87;

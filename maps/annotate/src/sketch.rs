@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_maps::Layer;
 use socrates_model::Vector;
-use socrates_model::geometry::segments_cross;
 
+use crate::attach::{attach, open_floor};
 use crate::floor::{Floor, Spot};
 use crate::kind::{RegionKind, sides_m};
 use crate::middle::middle;
@@ -23,12 +23,6 @@ const OPEN_EDGE_MOST_M: f64 = 7.5;
 const NARROW_LEAST_M: f64 = 2.4;
 /// A way with less clean clearance than this on both sides is narrow, m: two people of 0.6 m do not pass with ease.
 pub(crate) const NARROW_M: f64 = 0.8;
-/// Longest straight way that is added beside others, m.
-const SHORTCUT_MOST_M: f64 = 8.0;
-/// Clearance in the middle of such a way, m.
-const SHORTCUT_CLEAR_M: f64 = 1.2;
-/// How many times as long the way along the others is at least.
-const SHORTCUT: f64 = 1.5;
 /// Places in a long room are at least so far apart, m.
 const ROOM_STEP_M: f64 = 2.4;
 /// A place that is not seen from a door counts as so much farther away, m.
@@ -37,10 +31,6 @@ const UNSEEN_M: f64 = 4.0;
 const ROUND: f64 = 1.15;
 /// A door is approached from so far before its wall, m.
 const BEFORE_M: f64 = 0.35;
-/// So many pairs of places are tried to join two parts.
-const REPAIRS: usize = 4;
-/// So many places of ways are tried, the nearest first, before a door is led round something.
-const SEEN_MOST: usize = 400;
 /// Interior corners nearer to each other than this are one, m.
 const ONE_CORNER_M: f64 = 1.3;
 
@@ -115,133 +105,6 @@ impl Sketch {
         made.drop_blocked(ground.floor);
         made.repair(ground.floor);
         made
-    }
-
-    /// Takes away ways along which the robot does not get.
-    fn drop_blocked(&mut self, floor: &Floor) {
-        let ways = std::mem::take(&mut self.ways);
-        self.ways = ways.into_iter().filter(|[a, b]| is_straight(floor, &self.at(*a), &self.at(*b), 0.0)).collect();
-    }
-
-    /// Number of the part of each place that hangs together, the lowest of its places.
-    pub(crate) fn parts(&self) -> Vec<usize> {
-        let mut up: Vec<usize> = (0..self.places.len()).collect();
-        let root = |up: &[usize], mut at: usize| {
-            while let Some(next) = up.get(at).copied().filter(|next| *next != at) {
-                at = next;
-            }
-            at
-        };
-        for [a, b] in &self.ways {
-            let (a, b) = (root(&up, *a), root(&up, *b));
-            if let Some(slot) = up.get_mut(a.max(b)) {
-                *slot = a.min(b);
-            }
-        }
-        (0..up.len()).map(|at| root(&up, at)).collect()
-    }
-
-    /// The number of the largest part.
-    pub(crate) fn largest(parts: &[usize]) -> Option<usize> {
-        let mut sizes: BTreeMap<usize, usize> = BTreeMap::new();
-        for part in parts {
-            *sizes.entry(*part).or_insert(0) += 1;
-        }
-        sizes.iter().max_by(|a, b| a.1.cmp(b.1).then(b.0.cmp(a.0))).map(|(part, _)| *part)
-    }
-
-    /// Leads parts that nothing joins with the largest one there, round what lies between them.
-    fn repair(&mut self, floor: &Floor) {
-        let mut hopeless: BTreeSet<usize> = BTreeSet::new();
-        for _ in 0..self.places.len() {
-            let parts = self.parts();
-            let Some(main) = Self::largest(&parts) else { return };
-            let of_main = |place: &usize| parts.get(*place) == Some(&main);
-            let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
-            for (place, part) in parts.iter().enumerate() {
-                if *part == main || hopeless.contains(part) {
-                    continue;
-                }
-                let others = (0..self.places.len()).filter(of_main);
-                pairs.extend(others.map(|other| ((self.at(other) - self.at(place)).norm(), place, other)));
-            }
-            pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-            let Some((_, first, _)) = pairs.first().copied() else { return };
-            let Some(part) = parts.get(first).copied() else { return };
-            let own = pairs.iter().filter(|(_, place, _)| parts.get(*place) == Some(&part)).take(REPAIRS);
-            let found = own.into_iter().find_map(|(_, place, other)| {
-                let path = way(floor, &self.at(*place), &self.at(*other))?;
-                Some((*place, *other, path))
-            });
-            match found {
-                Some((place, other, path)) => {
-                    let corners = spread(floor, &simplified(floor, &path));
-                    self.chain(place, other, &corners, What::Corner);
-                    if self.parts().get(place) != self.parts().get(other) {
-                        hopeless.insert(part);
-                    }
-                }
-                None => {
-                    hopeless.insert(part);
-                }
-            }
-        }
-    }
-
-    /// Adds straight ways over wide floor where the way along the others is much longer.
-    fn shortcuts(&mut self, ground: &Ground<'_>) {
-        let mut pairs: Vec<(f64, [usize; 2])> = Vec::new();
-        for b in 0..self.places.len() {
-            for a in 0..b {
-                let length = (self.at(a) - self.at(b)).norm();
-                let walked =
-                    |at: usize| self.places.get(at).is_some_and(|place| matches!(place.what, What::Way | What::Corner));
-                if length <= SHORTCUT_MOST_M && walked(a) && walked(b) {
-                    pairs.push((length, [a, b]));
-                }
-            }
-        }
-        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (length, [a, b]) in pairs {
-            let (from, to) = (self.at(a), self.at(b));
-            let crosses = || {
-                self.ways.iter().any(|way| {
-                    !way.contains(&a)
-                        && !way.contains(&b)
-                        && segments_cross(&from, &to, &self.at(way[0]), &self.at(way[1]))
-                })
-            };
-            let floor = ground.floor;
-            if floor.clean_m(&(from + (to - from) * 0.5)) >= SHORTCUT_CLEAR_M
-                && floor.line_m(&from, &to) >= KEPT_M
-                && floor.clean_line_m(&from, &to) > 0.0
-                && self.length_m(a, b, SHORTCUT * length) > SHORTCUT * length
-                && !crosses()
-            {
-                self.ways.push([a, b]);
-            }
-        }
-    }
-
-    /// Length of the shortest way between two places, m; infinite where it is longer than the most.
-    fn length_m(&self, from: usize, to: usize, most_m: f64) -> f64 {
-        let mut away: BTreeMap<usize, f64> = BTreeMap::from([(from, 0.0)]);
-        let mut open: Vec<(f64, usize)> = vec![(0.0, from)];
-        while let Some(next) = open.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0)).map(|(at, _)| at) {
-            let (so_far, here) = open.swap_remove(next);
-            if here == to || so_far > most_m {
-                return if here == to { so_far } else { f64::INFINITY };
-            }
-            for [a, b] in self.ways.iter().filter(|way| way.contains(&here)) {
-                let other = if *a == here { *b } else { *a };
-                let total = so_far + (self.at(other) - self.at(here)).norm();
-                if away.get(&other).is_none_or(|known| total < *known) {
-                    away.insert(other, total);
-                    open.push((total, other));
-                }
-            }
-        }
-        f64::INFINITY
     }
 
     fn add(&mut self, at: Spot, what: What) -> usize {
@@ -335,7 +198,7 @@ impl Sketch {
     }
 
     /// Places along corners, the first and last of which are there.
-    fn chain(&mut self, from: usize, to: usize, corners: &[Spot], what: What) {
+    pub(crate) fn chain(&mut self, from: usize, to: usize, corners: &[Spot], what: What) {
         let mut last = from;
         for corner in corners.get(1..corners.len().saturating_sub(1)).unwrap_or_default() {
             let next = self.add(*corner, what);
@@ -474,7 +337,7 @@ fn beside_middle(ground: &Ground<'_>, region: usize, middle: &Spot) -> Vec<Spot>
 }
 
 /// Corners without those that are one with another; the first and the last stay.
-fn spread(floor: &Floor, corners: &[Spot]) -> Vec<Spot> {
+pub(crate) fn spread(floor: &Floor, corners: &[Spot]) -> Vec<Spot> {
     let mut out = corners.to_vec();
     let mut at = 1;
     while at + 2 < out.len() {
@@ -508,97 +371,4 @@ pub(crate) fn free_middle(floor: &Floor, throat: &crate::throat::Throat) -> Spot
     }
     let spots = (1..20_u32).map(|part| throat.from + (throat.to - throat.from) * (f64::from(part) / 20.0));
     spots.max_by(|a, b| floor.raw_m(a).total_cmp(&floor.raw_m(b))).unwrap_or(middle)
-}
-
-/// Adds the places on open floor, and leads what ends at its rim to them.
-fn open_floor(ground: &Ground<'_>, network: &mut Network) {
-    let floor = ground.floor;
-    let from = network.branches.len();
-    for lattice in &ground.open.lattices {
-        let knots: Vec<usize> = lattice.spots.iter().map(|spot| network.add(*spot, Some(Held::Open))).collect();
-        for way in &lattice.ways {
-            let [Some(from), Some(to)] = way.map(|end| knots.get(end).copied()) else { continue };
-            let [Some(a), Some(b)] = [from, to].map(|knot| network.knots.get(knot).map(|knot| knot.at)) else {
-                continue;
-            };
-            network.branches.push(Branch { ends: [from, to], path: dense(floor, &a, &b) });
-        }
-    }
-    let rims: Vec<usize> = (0..network.knots.len())
-        .filter(|knot| network.knots.get(*knot).is_some_and(|knot| knot.held == Some(Held::Rim)))
-        .collect();
-    for rim in rims {
-        let Some(knot) = network.knots.get_mut(rim) else { continue };
-        knot.held = None;
-        let at = knot.at;
-        let mut near: Vec<(f64, usize, usize)> = Vec::new();
-        for (number, branch) in network.branches.iter().enumerate().skip(from) {
-            let spots = branch.path.iter().enumerate();
-            near.extend(spots.map(|(place, spot)| ((spot - at).norm(), number, place)));
-        }
-        join(floor, network, (rim, &at), near, &|spot| is_straight(floor, &at, spot, LEAST_M));
-    }
-}
-
-/// A straight way with a place at every other cell.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells of a way")]
-fn dense(floor: &Floor, from: &Spot, to: &Spot) -> Vec<Spot> {
-    let steps = ((to - from).norm() / (2.0 * floor.cell_m)).ceil().clamp(1.0, 1e4) as u32;
-    (0..=steps).map(|step| from + (to - from) * (f64::from(step) / f64::from(steps))).collect()
-}
-
-/// Leads a knot to the nearest of the places of branches that it sees, or round something to the nearest one.
-fn join(
-    floor: &Floor,
-    network: &mut Network,
-    (knot, before): (usize, &Spot),
-    mut near: Vec<(f64, usize, usize)>,
-    sees: &dyn Fn(&Spot) -> bool,
-) -> bool {
-    let Some(at) = network.knots.get(knot).map(|knot| knot.at) else { return false };
-    near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let seen = near.iter().take(SEEN_MOST).find(|(_, branch, place)| {
-        let spot = network.branches.get(*branch).and_then(|branch| branch.path.get(*place));
-        spot.is_some_and(sees)
-    });
-    let Some((_, branch, place)) = seen.or_else(|| near.first()).copied() else { return false };
-    let Some(other) = network.parted(branch, place) else { return false };
-    lead(floor, network, (at, *before), knot, other);
-    true
-}
-
-/// A branch between two knots, straight or round something.
-fn lead(floor: &Floor, network: &mut Network, (at, before): (Spot, Spot), knot: usize, other: usize) {
-    let Some(to) = network.knots.get(other).map(|knot| knot.at).filter(|_| other != knot) else { return };
-    if let Some(path) = approach(floor, &at, &before, &to) {
-        network.branches.push(Branch { ends: [knot, other], path });
-    }
-}
-
-/// Leads a door to the nearest way of the region before it.
-fn attach(ground: &Ground<'_>, network: &mut Network, door: usize, (region, before): (usize, Spot)) {
-    let Some(at) = network.knots.get(door).map(|knot| knot.at) else { return };
-    let floor = ground.floor;
-    let mut near: Vec<(f64, usize, usize)> = Vec::new();
-    for (number, branch) in network.branches.iter().enumerate() {
-        if branch.ends.contains(&door) {
-            continue;
-        }
-        let own = |spot: &Spot| ground.regions.of(floor.cell(spot)) == Some(region);
-        let spots = branch.path.iter().enumerate().filter(|(_, spot)| own(spot));
-        near.extend(spots.map(|(place, spot)| ((spot - before).norm(), number, place)));
-    }
-    // On this side of the door, which is closed on the clean map.
-    let through = is_straight(floor, &at, &before, LEAST_M);
-    let sees = |spot: &Spot| {
-        let straight = is_straight(floor, &at, spot, LEAST_M);
-        floor.clean_line_m(&before, spot) > 0.0 && (straight || through && is_straight(floor, &before, spot, LEAST_M))
-    };
-    if !join(floor, network, (door, &before), near, &sees) {
-        // A piece of floor without a way of its own.
-        let middle = middle(floor, ground.regions, region, &[before]);
-        let known = network.knots.iter().position(|knot| knot.held.is_none() && knot.at == middle);
-        let knot = known.unwrap_or_else(|| network.add(middle, None));
-        lead(floor, network, (at, before), door, knot);
-    }
 }

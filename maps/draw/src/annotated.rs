@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::{Location, PlaceClass, Point};
 
-use crate::label::{Area, Labels, text_width};
+use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_scale, wall_areas};
 use crate::palette;
 use crate::svg::Svg;
@@ -24,6 +24,9 @@ fn class_color(class: PlaceClass) -> &'static str {
         PlaceClass::Plain => "#7d8590",
     }
 }
+
+/// Most lines of a remark.
+const NOTE_LINES: usize = 5;
 
 /// A remark on a picture: where it belongs, map frame, m, and what it says.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,15 +126,22 @@ pub fn annotated_map_with(location: &Location, notes: &[MapNote]) -> String {
 /// A remark in lines of at most so many pixels.
 fn note_lines(number: usize, note: &MapNote, most: f64) -> Vec<String> {
     let place = note.at.map_or_else(String::new, |at| format!("({:.1}, {:.1}) m: ", at.x, at.y));
-    let mut lines = vec![format!("{number}  {place}")];
-    for word in note.text.split_whitespace() {
-        let Some(line) = lines.last_mut() else { break };
-        if text_width(line, 13.0) + text_width(word, 13.0) > most {
-            lines.push(format!("    {word} "));
-        } else {
-            line.push_str(word);
-            line.push(' ');
-        }
+    wrapped(&format!("{number}  {place}{}", note.text), most, 13.0, NOTE_LINES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn remarks_are_numbered_at_their_places_and_listed_below() {
+        let location = crate::fixture::location();
+        let bare = annotated_map(&location);
+        let note = |at, text: &str| MapNote { at, text: text.to_owned() };
+        let notes = [note(Some(Point::new(1.0, 1.0)), "a gap of 0.5 m"), note(None, &"long ".repeat(90))];
+        let svg = annotated_map_with(&location, &notes);
+        assert!(svg.contains("1  (1.0, 1.0) m: a gap of 0.5 m"), "{svg}");
+        assert_eq!(svg.matches("<circle").count(), bare.matches("<circle").count() + 1);
+        assert!(note_lines(2, &notes[1], 400.0).len() > 2);
     }
-    lines
 }
