@@ -434,7 +434,8 @@ fn written(grid: &Grid, naming: &Naming<'_>) -> Annotation {
         nodes.push(GraphNode { id, kind: kind.clone(), at: world(grid, naming.floor, &sketch.at(*place)) });
         confidence.push((sure * 100.0).round() / 100.0);
     }
-    let rank = |place: &usize| order.iter().position(|other| other == place);
+    let ranks: BTreeMap<usize, usize> = order.iter().enumerate().map(|(rank, place)| (*place, rank)).collect();
+    let rank = |place: &usize| ranks.get(place).copied();
     let mut ways: Vec<[usize; 2]> =
         sketch.ways.iter().map(|[a, b]| if rank(a) <= rank(b) { [*a, *b] } else { [*b, *a] }).collect();
     ways.sort_by_key(|[a, b]| (rank(a), rank(b)));

@@ -6,6 +6,8 @@ use crate::network::{Branch, Held, Network};
 use crate::sketch::Ground;
 use crate::way::{LEAST_M, approach, is_straight};
 
+/// Ways this near to a door are looked at first, m.
+const NEAR_M: f64 = 8.0;
 /// So many places of ways are tried, the nearest first, before a door is led round something.
 const SEEN_MOST: usize = 400;
 
@@ -79,13 +81,18 @@ pub(crate) fn attach(ground: &Ground<'_>, network: &mut Network, door: usize, (r
     let Some(at) = network.knots.get(door).map(|knot| knot.at) else { return };
     let floor = ground.floor;
     let mut near: Vec<(f64, usize, usize)> = Vec::new();
-    for (number, branch) in network.branches.iter().enumerate() {
-        if branch.ends.contains(&door) {
-            continue;
+    for within_m in [NEAR_M, f64::INFINITY] {
+        for (number, branch) in network.branches.iter().enumerate().filter(|(_, branch)| !branch.ends.contains(&door)) {
+            for (place, spot) in branch.path.iter().enumerate() {
+                let off_m = (spot - before).norm();
+                if off_m <= within_m && ground.regions.of(floor.cell(spot)) == Some(region) {
+                    near.push((off_m, number, place));
+                }
+            }
         }
-        let own = |spot: &Spot| ground.regions.of(floor.cell(spot)) == Some(region);
-        let spots = branch.path.iter().enumerate().filter(|(_, spot)| own(spot));
-        near.extend(spots.map(|(place, spot)| ((spot - before).norm(), number, place)));
+        if !near.is_empty() {
+            break;
+        }
     }
     // On this side of the door, which is closed on the clean map.
     let through = is_straight(floor, &at, &before, LEAST_M);

@@ -236,6 +236,13 @@ impl Floor {
         f64::from(self.clear_m.get(column, row).unwrap_or(0.0))
     }
 
+    /// Whether the middle of a working cell is free on the clean map.
+    pub(crate) fn is_free(&self, (column, row): Cell) -> bool {
+        let middle = |at: usize, most: usize| (at * self.stride + self.stride / 2).min(most.saturating_sub(1));
+        let (column, row) = (middle(column, self.cleaned.width), middle(row, self.cleaned.height));
+        self.cleaned.at(column, row) == Kind::Free
+    }
+
     /// Columns and rows of working cells.
     pub(crate) fn size(&self) -> (usize, usize) {
         (self.clear_m.width, height(&self.clear_m))

@@ -13,7 +13,7 @@ const LEAST_M2: f64 = 1.4;
 /// The floor on a side of a door is looked for so far beyond it, m.
 const BEYOND_M: [f64; 6] = [0.0, 0.15, 0.3, 0.45, 0.6, 0.75];
 /// Share of the picture's rim along which the floor round a building lies.
-const RIM_SHARE: f64 = 0.25;
+const RIM_SHARE: f64 = 0.4;
 
 /// A door with the regions on both sides: that before it and that behind it.
 #[derive(Debug, Clone, Copy)]
@@ -231,19 +231,20 @@ fn measured(floor: &Floor, of_cell: &Layer<u32>, count: usize) -> Vec<Region> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few cells")]
     let inward = (BODY_M / floor.cell_m) as usize + 1;
     let mut at_rim = vec![0_usize; count];
-    let mut count_at = |cell: Cell| {
+    // Floor of a building that comes near to the rim has a wall before it; floor round one goes on to the rim itself.
+    let mut count_at = |rim: Cell, cell: Cell| {
         let number = of_cell.get(cell.0, cell.1).unwrap_or(0) as usize;
-        if let Some(count) = number.checked_sub(1).and_then(|at| at_rim.get_mut(at)) {
+        if let Some(count) = number.checked_sub(1).filter(|_| floor.is_free(rim)).and_then(|at| at_rim.get_mut(at)) {
             *count += 1;
         }
     };
     for column in 0..width {
-        count_at((column, inward));
-        count_at((column, rows.wrapping_sub(inward + 1)));
+        count_at((column, 0), (column, inward));
+        count_at((column, rows.wrapping_sub(1)), (column, rows.wrapping_sub(inward + 1)));
     }
     for row in 0..rows {
-        count_at((inward, row));
-        count_at((width.wrapping_sub(inward + 1), row));
+        count_at((0, row), (inward, row));
+        count_at((width.wrapping_sub(1), row), (width.wrapping_sub(inward + 1), row));
     }
     for (region, count) in all.iter_mut().zip(at_rim) {
         region.outside = count as f64 >= RIM_SHARE * 2.0 * (width + rows) as f64;

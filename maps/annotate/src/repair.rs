@@ -21,13 +21,17 @@ impl Sketch {
     /// Adds straight ways over wide floor where the way along the others is much longer.
     pub(crate) fn shortcuts(&mut self, ground: &Ground<'_>) {
         let mut pairs: Vec<(f64, [usize; 2])> = Vec::new();
-        for b in 0..self.places.len() {
-            for a in 0..b {
-                let length = (self.at(a) - self.at(b)).norm();
-                let walked =
-                    |at: usize| self.places.get(at).is_some_and(|place| matches!(place.what, What::Way | What::Corner));
-                if length <= SHORTCUT_MOST_M && walked(a) && walked(b) {
-                    pairs.push((length, [a, b]));
+        let walked =
+            |at: &usize| self.places.get(*at).is_some_and(|place| matches!(place.what, What::Way | What::Corner));
+        let mut places: Vec<usize> = (0..self.places.len()).filter(walked).collect();
+        places.sort_by(|a, b| self.at(*a).x.total_cmp(&self.at(*b).x).then(a.cmp(b)));
+        for (rank, one) in places.iter().enumerate() {
+            // Those to the right, as far as they are near.
+            let rest = places.get(rank + 1..).unwrap_or_default();
+            for other in rest.iter().take_while(|other| self.at(**other).x - self.at(*one).x <= SHORTCUT_MOST_M) {
+                let length = (self.at(*one) - self.at(*other)).norm();
+                if length <= SHORTCUT_MOST_M {
+                    pairs.push((length, [*one.min(other), *one.max(other)]));
                 }
             }
         }
@@ -48,7 +52,7 @@ impl Sketch {
                 && self.length_m(a, b, SHORTCUT * length) > SHORTCUT * length
                 && !crosses()
             {
-                self.ways.push([a, b]);
+                self.join(a, b);
             }
         }
     }
@@ -62,8 +66,7 @@ impl Sketch {
             if here == to || so_far > most_m {
                 return if here == to { so_far } else { f64::INFINITY };
             }
-            for [a, b] in self.ways.iter().filter(|way| way.contains(&here)) {
-                let other = if *a == here { *b } else { *a };
+            for other in self.beside(here).iter().copied() {
                 let total = so_far + (self.at(other) - self.at(here)).norm();
                 if away.get(&other).is_none_or(|known| total < *known) {
                     away.insert(other, total);
@@ -77,7 +80,12 @@ impl Sketch {
     /// Takes away ways along which the robot does not get.
     pub(crate) fn drop_blocked(&mut self, floor: &Floor) {
         let ways = std::mem::take(&mut self.ways);
-        self.ways = ways.into_iter().filter(|[a, b]| is_straight(floor, &self.at(*a), &self.at(*b), 0.0)).collect();
+        self.forget_ways();
+        for [a, b] in ways {
+            if is_straight(floor, &self.at(a), &self.at(b), 0.0) {
+                self.join(a, b);
+            }
+        }
     }
 
     /// Number of the part of each place that hangs together, the lowest of its places.

@@ -65,6 +65,8 @@ pub(crate) struct Place {
 pub(crate) struct Sketch {
     pub(crate) places: Vec<Place>,
     pub(crate) ways: Vec<[usize; 2]>,
+    /// Where ways lead from each place.
+    beside: Vec<Vec<usize>>,
 }
 
 /// What a sketch is made from.
@@ -109,14 +111,32 @@ impl Sketch {
 
     fn add(&mut self, at: Spot, what: What) -> usize {
         self.places.push(Place { at, what });
+        self.beside.push(Vec::new());
         self.places.len() - 1
     }
 
-    fn join(&mut self, a: usize, b: usize) {
-        let way = [a.min(b), a.max(b)];
-        if a != b && !self.ways.contains(&way) {
-            self.ways.push(way);
+    /// Joins two places, once.
+    pub(crate) fn join(&mut self, a: usize, b: usize) {
+        if a == b || self.beside(a).contains(&b) {
+            return;
         }
+        self.ways.push([a.min(b), a.max(b)]);
+        for (one, other) in [(a, b), (b, a)] {
+            if let Some(list) = self.beside.get_mut(one) {
+                list.push(other);
+            }
+        }
+    }
+
+    /// The places to which ways lead from a place.
+    pub(crate) fn beside(&self, place: usize) -> &[usize] {
+        self.beside.get(place).map_or(&[], Vec::as_slice)
+    }
+
+    /// Takes away all ways.
+    pub(crate) fn forget_ways(&mut self) {
+        self.ways.clear();
+        self.beside = vec![Vec::new(); self.places.len()];
     }
 
     pub(crate) fn at(&self, place: usize) -> Spot {

@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn remarks_are_numbered_at_their_places_and_listed_below() {
-        let location = crate::fixture::location();
+        let location = crate::fixture::hall("hall");
         let bare = annotated_map(&location);
         let note = |at, text: &str| MapNote { at, text: text.to_owned() };
         let notes = [note(Some(Point::new(1.0, 1.0)), "a gap of 0.5 m"), note(None, &"long ".repeat(90))];
