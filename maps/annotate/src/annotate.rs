@@ -363,9 +363,12 @@ fn one_piece(sketch: &mut Sketch, remarks: &mut Vec<Remark>) {
     let stays: Vec<bool> = parts.iter().map(|own| Some(*own) == largest).collect();
     let lost: Vec<Spot> =
         sketch.places.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(place, _)| place.at).collect();
-    for spot in lost.iter().take(NAMED_MOST) {
-        let text =
-            "a place here was given up: no straight way of the robot's width joins it with the others".to_owned();
+    if let Some(spot) = lost.first() {
+        let text = format!(
+            "places that no way of the robot's width joins with the others were given up, here the first ({} of them); their floor is \
+             among furniture",
+            lost.len()
+        );
         remarks.push(Remark::new(RemarkKind::Unreached, Some(*spot), text));
     }
     let mut number = 0;

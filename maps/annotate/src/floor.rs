@@ -147,7 +147,7 @@ impl Floor {
         free(grid, &numbers, &is_dust);
         let first = found.iter().zip(&is_dust).find(|(_, dust)| **dust).map(|(part, _)| part.first);
         let at = first.map(|(column, row)| self.map_spot((column, row)));
-        remarks.push(Remark::new(RemarkKind::Dust, at, format!("{specks} specks of at most {DUST_M2} m² lie on free floor; they part no rooms, but people walk round them: clean the picture if they are dust")));
+        remarks.push(Remark::new(RemarkKind::Dust, at, format!("on free floor lie specks of at most {DUST_M2} m² ({specks} of them); they part no rooms, but people walk round them: clean the picture if they are dust")));
         true
     }
 
@@ -188,7 +188,7 @@ impl Floor {
         free(grid, &numbers, &small);
         let first = found.iter().zip(&small).find(|(_, small)| **small).map(|(part, _)| part.first);
         let at = first.map(|(column, row)| self.map_spot((column, row)));
-        remarks.push(Remark::new(RemarkKind::Things, at, format!("{things} things of at most {THING_M} m stand alone on the floor (pillars, chairs, tables); ways lead round them, but no corridor is made of them")));
+        remarks.push(Remark::new(RemarkKind::Things, at, format!("on the floor stand things of at most {THING_M} m alone ({things} of them: pillars, chairs, tables); ways lead round them, but no corridor is made of them")));
         true
     }
 
