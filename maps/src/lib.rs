@@ -44,6 +44,7 @@ pub use field::{DistanceField, free_disc, nearest_free};
 pub use generate::generate;
 pub use geodesic::Geodesic;
 pub use ground::{Ground, Kept};
-pub use read::{load, load_map, parse};
+pub use layer::Layer;
+pub use read::{MapWithFiles, load, load_map, load_raw, parse};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

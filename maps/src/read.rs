@@ -71,6 +71,17 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
 /// # Errors
 /// Every problem found in the two files.
 pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
+    load_raw(file).map(|(location, _)| location)
+}
+
+/// A map as a location without nodes, and the bytes of its files by their names in a location folder.
+pub type MapWithFiles = (Location, BTreeMap<String, Vec<u8>>);
+
+/// The same with the bytes of both files, that of the description under the name `map.yaml`, as a location folder holds it.
+///
+/// # Errors
+/// As for [`load_map`].
+pub fn load_raw(file: &Path) -> Result<MapWithFiles, Vec<Fault>> {
     let bytes = std::fs::read(file).map_err(|why| {
         vec![Fault::new(FaultCode::MRead, Where::file(file.display()), format!("cannot be read: {why}"))]
     })?;
@@ -87,7 +98,7 @@ pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
     let (soft, hard): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(Fault::is_soft);
     let Some(grid) = grid.filter(|_| hard.is_empty()) else { return Err(hard) };
     let name = file.file_stem().map_or_else(|| "map".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    Ok(Location {
+    let location = Location {
         format: socrates_model::FORMAT,
         description: name.replace(['_', '-'], " "),
         name,
@@ -95,7 +106,8 @@ pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
         graph: SceneGraph::default(),
         doors: Vec::new(),
         warnings: warnings.into_iter().chain(soft.iter().map(ToString::to_string)).collect(),
-    })
+    };
+    Ok((location, files))
 }
 
 /// Whether a file name stays in its folder.

@@ -92,6 +92,7 @@ mod progress;
 mod protocol;
 pub mod query;
 pub mod rates;
+mod raw_map;
 mod reading;
 mod refused;
 pub mod replay;

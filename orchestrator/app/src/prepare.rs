@@ -16,6 +16,7 @@ use crate::config::Config;
 use crate::exit::Complaint;
 use crate::files;
 use crate::layout;
+use crate::raw_map;
 use crate::run_options::RunOptions;
 use crate::words::plural;
 
@@ -136,7 +137,7 @@ pub(crate) fn prepare_text(
         complaint.causes = problems.iter().map(|bad| bad.told(shown)).collect();
         complaint
     })?;
-    let notes = read_nav2(&mut request, folder)?;
+    let mut notes = read_nav2(&mut request, folder)?;
     if let Some(options) = options {
         apply(&mut request, options)?;
     }
@@ -145,7 +146,8 @@ pub(crate) fn prepare_text(
         request.robot.planners.insert(0, PlannerName::reference());
     }
     let of_request = |why: Complaint| Complaint { what: format!("the request `{shown}`: {}", why.what), ..why };
-    let (mut location, location_files) = load_location(&request.location, folder).map_err(of_request)?;
+    let (mut location, location_files, raw) = load_any(&request.location, folder).map_err(of_request)?;
+    notes.extend(raw);
     if let Some(description) = &request.location_description {
         location.description.clone_from(description);
     }
@@ -337,8 +339,16 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// A location by shipped name or folder, with its files.
+/// A location by shipped name or folder, with its files. A map without a scene graph is annotated.
 pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Complaint> {
+    load_any(name, folder).map(|(location, files, _)| (location, files))
+}
+
+/// A location with its files, and what is to be said of it where the program annotated it.
+type Loaded = (Location, BTreeMap<String, Vec<u8>>, Option<String>);
+
+/// A location by shipped name, folder or map file.
+fn load_any(name: &str, folder: &Path) -> Result<Loaded, Complaint> {
     let wrong = |faults: Vec<Fault>| {
         Complaint::faults(
             format!("the location `{name}` is not usable"),
@@ -351,15 +361,20 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
         )
     };
     if let Some(files) = socrates_maps::shipped::files(name) {
-        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files));
+        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files, None));
     }
     let beside = folder.join(name);
-    let dir = if beside.is_dir() { beside } else { PathBuf::from(name) };
+    let dir = if beside.exists() { beside } else { PathBuf::from(name) };
+    if let Some(file) = raw_map::file_of(&dir) {
+        let map = raw_map::annotated(&file, &socrates_annotate::Options::default())?;
+        let note = raw_map::note(&map, name);
+        return Ok((map.location, map.files, Some(note)));
+    }
     if !dir.is_dir() {
         return Err(Complaint::input(
             format!("there is no location `{name}`"),
             format!(
-                "give a folder with map.yaml and scene_graph.json, or one of: {}",
+                "give a folder with a map (map.yaml and its image), or one of: {}",
                 socrates_maps::shipped::names().join(", ")
             ),
         ));
@@ -373,7 +388,7 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
             files.insert(file, bytes);
         }
     }
-    Ok((location, files))
+    Ok((location, files, None))
 }
 
 /// A pinned artifact in our own form, or out of a file of the published tool, of whose artifacts one is taken.
