@@ -293,4 +293,33 @@ mod tests {
         assert!(castle.short().contains("`castle`") && castle.short().contains("warehouse"), "{}", castle.short());
         assert!(!folder.path().join("castle-7").exists());
     }
+
+    #[test]
+    fn a_map_without_a_scene_graph_is_a_location_and_annotate_writes_it_elsewhere() {
+        let talk = Printer::to_nobody(Format::Json);
+        let folder = tempfile::tempdir().unwrap();
+        let raw = folder.path().join("mine");
+        let shipped = socrates_maps::shipped::files("office").unwrap();
+        let map = |name: &str| shipped[name].clone();
+        self::folder(&BTreeMap::from(["map.yaml", "map.png"].map(|name| (name.to_owned(), map(name)))), &raw).unwrap();
+        let (location, files) = load_location(&raw.display().to_string(), Path::new(".")).unwrap();
+        assert_eq!(location.name, "mine");
+        assert!(!location.graph.nodes().is_empty() && files.contains_key("scene_graph.json"));
+        assert_eq!(std::fs::read_dir(&raw).unwrap().count(), 2, "nothing is written into the folder");
+        let out = folder.path().join("made");
+        let options = AnnotateOptions { out: Some(out.clone()), ..AnnotateOptions::default() };
+        annotate(&talk, &raw, &options).unwrap();
+        assert_eq!(socrates_maps::load(&out).unwrap().graph, location.graph);
+        assert!(out.join("annotation.png").is_file() && out.join("annotation.json").is_file());
+        let again = annotate(&talk, &raw, &options).unwrap_err();
+        assert!(again.what.contains("has a scene graph already"), "{}", again.what);
+        score(&talk, "office", &out.display().to_string()).unwrap();
+        for (keep, part) in [("4", "`--keep 4` is no point"), ("900,900", "cannot be annotated")] {
+            let wrong = AnnotateOptions { keep: Some(keep.to_owned()), ..AnnotateOptions::default() };
+            let told = annotate(&talk, &raw, &wrong).unwrap_err();
+            assert!(told.what.contains(part), "{}", told.what);
+        }
+        let nothing = annotate(&talk, &folder.path().join("nowhere"), &options).unwrap_err();
+        assert!(nothing.what.contains("is no map"), "{}", nothing.what);
+    }
 }
