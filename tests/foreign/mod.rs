@@ -7,7 +7,7 @@ mod deploy;
 mod drivers;
 mod live;
 mod looks;
-mod models;
+pub(crate) mod models;
 mod python;
 mod readers;
 mod strangers;

@@ -98,9 +98,10 @@ fn answers(folder: &Path) -> Answers {
 }
 
 /// What becomes of each sentence: the words that ask for something and the people who do it, or a reason.
-type Fates<'a> = [Result<&'a [(&'a str, &'a str)], &'a str>];
+pub(crate) type Fates<'a> = [Result<&'a [(&'a str, &'a str)], &'a str>];
 
-const WAREHOUSE_ACCOUNT: [Result<&[(&str, &str)], &str>; 4] = [
+/// The account of [`WAREHOUSE`].
+pub(crate) const WAREHOUSE_ACCOUNT: [Result<&[(&str, &str)], &str>; 4] = [
     Ok(&[("One person walks towards the robot", "human_1")]),
     Ok(&[("One person follows the robot", "human_2")]),
     Err("errand"),
@@ -108,7 +109,7 @@ const WAREHOUSE_ACCOUNT: [Result<&[(&str, &str)], &str>; 4] = [
 ];
 
 /// The proposal with an account: each fact is the source of a clause about who does it, which was written for the same words.
-fn accounted(proposal: &str, fates: &Fates<'_>) -> String {
+pub(crate) fn accounted(proposal: &str, fates: &Fates<'_>) -> String {
     let mut value: Value = serde_json::from_str(proposal).unwrap();
     for clause in value["expected_events"].as_array_mut().unwrap() {
         clause.as_object_mut().unwrap().remove("source");
