@@ -83,7 +83,7 @@ fn a_person_answers_a_run_and_what_they_said_is_a_cassette() {
     console.leave().unwrap();
     // Without the console, from what was kept.
     let tape = exchanges(&folder.join("tape"));
-    assert_eq!(tape.len(), 3);
+    assert_eq!(tape.len(), 2);
     assert!(tape.iter().all(|exchange| exchange["answer"]["model"] == "console:person"), "{tape:?}");
     let (finished, again) = make(folder, "again", WAREHOUSE, &["--author", "cassette:tape"]);
     assert_eq!(again["verdict"], "realised", "{}\n{}", finished.err, finished.out);

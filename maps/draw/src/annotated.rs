@@ -126,7 +126,7 @@ pub fn annotated_map_with(location: &Location, notes: &[MapNote]) -> String {
 /// A remark in lines of at most so many pixels.
 fn note_lines(number: usize, note: &MapNote, most: f64) -> Vec<String> {
     let place = note.at.map_or_else(String::new, |at| format!("({:.1}, {:.1}) m: ", at.x, at.y));
-    wrapped(&format!("{number}  {place}{}", note.text), most, 13.0, NOTE_LINES)
+    wrapped(&format!("{number} {place}{}", note.text), most, 13.0, NOTE_LINES)
 }
 
 #[cfg(test)]
@@ -140,7 +140,7 @@ mod tests {
         let note = |at, text: &str| MapNote { at, text: text.to_owned() };
         let notes = [note(Some(Point::new(1.0, 1.0)), "a gap of 0.5 m"), note(None, &"long ".repeat(90))];
         let svg = annotated_map_with(&location, &notes);
-        assert!(svg.contains("1  (1.0, 1.0) m: a gap of 0.5 m"), "{svg}");
+        assert!(svg.contains("1 (1.0, 1.0) m: a gap of 0.5 m"), "{svg}");
         assert_eq!(svg.matches("<circle").count(), bare.matches("<circle").count() + 1);
         assert!(note_lines(2, &notes[1], 400.0).len() > 2);
     }
