@@ -38,6 +38,7 @@ pub mod openings;
 pub mod place;
 pub mod random;
 pub mod shipped;
+pub mod written;
 
 pub use check::check;
 pub use field::{DistanceField, free_disc, nearest_free};
@@ -45,6 +46,6 @@ pub use generate::generate;
 pub use geodesic::Geodesic;
 pub use ground::{Ground, Kept};
 pub use layer::Layer;
-pub use read::{MapWithFiles, load, load_map, load_raw, parse};
+pub use read::{EXTRA, GRAPH, MAP, MapWithFiles, load, load_map, load_raw, parse};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

@@ -8,12 +8,12 @@ use socrates_model::{Fault, FaultCode, GraphEdge, Grid, Location, SceneGraph, Wh
 use crate::field::DistanceField;
 use crate::{check, doors_file, graph_file, image, map_file, route};
 
-/// File of the map's description.
-pub(crate) const MAP: &str = "map.yaml";
-/// File of the scene graph.
-pub(crate) const GRAPH: &str = "scene_graph.json";
-/// Optional file of the description and the doors.
-pub(crate) const EXTRA: &str = "location.toml";
+/// Name of the map's description in a location folder.
+pub const MAP: &str = "map.yaml";
+/// Name of the scene graph in a location folder.
+pub const GRAPH: &str = "scene_graph.json";
+/// Name of the optional file of the description and the doors in a location folder.
+pub const EXTRA: &str = "location.toml";
 
 /// Radius with which an edge is led round walls, m: a person's; then ever slimmer ones are tried.
 const ROUTE_RADII_M: [f64; 3] = [0.3, 0.2, 0.05];

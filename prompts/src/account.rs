@@ -46,7 +46,7 @@ pub struct Claim {
     pub fact: String,
     /// Words of the sentence.
     pub quote: String,
-    /// Who does it; nobody for what holds of the whole scene.
+    /// The agent that does it; none for what holds of the whole scene.
     pub of: Option<AgentId>,
 }
 

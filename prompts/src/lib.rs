@@ -51,5 +51,5 @@ pub use message::{Message, Picture, Role};
 pub use prompt::{Prompt, Template, too_long};
 pub use question::Question;
 pub use schema::answer_schema;
-pub use sentences::{Sentence, sentences, text_of};
+pub use sentences::{Sentence, sentences};
 pub use style::{BehaviorsForm, Image, MOST_VARIANTS, Mode, PathsForm, Style, Telling};

@@ -53,7 +53,7 @@ pub struct Prompt {
     pub template: Template,
 }
 
-/// Who reads the texts of a question.
+/// The reader of a question's texts.
 enum Reads {
     /// The author: sentences are numbered.
     Author,
@@ -322,8 +322,9 @@ impl Question {
         format!("Scenario (data): {outline}\n")
     }
 
-    /// The humans that this question asks about.
-    pub(crate) fn humans<'a>(&self, proposal: &'a Proposal) -> Vec<&'a HumanProposal> {
+    /// The humans of a proposal that this question asks about.
+    #[must_use]
+    pub fn humans<'a>(&self, proposal: &'a Proposal) -> Vec<&'a HumanProposal> {
         proposal.humans.iter().filter(|human| self.only.is_empty() || self.only.contains(&human.id)).collect()
     }
 }

@@ -1,5 +1,7 @@
 //! The sentences of a request, numbered: an author that reads the texts itself accounts for each of them.
 
+use std::ops::Range;
+
 use socrates_model::Request;
 use socrates_model::fault::Span;
 use socrates_model::statement::TextKey;
@@ -25,31 +27,19 @@ pub struct Sentence {
     pub shown: String,
 }
 
-/// The text of a request; empty where it has none.
-#[must_use]
-pub fn text_of(request: &Request, key: TextKey) -> &str {
-    match key {
-        TextKey::RoughScenario => request.rough_scenario.as_deref().unwrap_or_default(),
-        TextKey::Task => &request.task,
-        TextKey::SocialContext => &request.social_context,
-    }
-}
-
 /// Every sentence of the texts of a request, in any language, in the order of [`TextKey::ALL`]. Together they have every character that is
 /// not a blank.
 #[must_use]
 pub fn sentences(request: &Request) -> Vec<Sentence> {
     let mut found = Vec::new();
     for at in TextKey::ALL {
-        let text = text_of(request, at);
-        for (from, to) in bounds(text) {
-            let Some(quote) = text.get(from..to) else { continue };
-            let chars =
-                |end: usize| u32::try_from(text.get(..end).unwrap_or_default().chars().count()).unwrap_or(u32::MAX);
+        let text = at.text_of(request);
+        for bytes in bounds(text) {
+            let Some((quote, span)) = text.get(bytes.clone()).zip(Span::of(text, &bytes)) else { continue };
             found.push(Sentence {
                 id: format!("s{}", found.len() + 1),
                 at,
-                span: Span { from: chars(from), to: chars(to) },
+                span,
                 quote: quote.to_owned(),
                 shown: clean(quote, most_shown(at)),
             });
@@ -58,9 +48,9 @@ pub fn sentences(request: &Request) -> Vec<Sentence> {
     found
 }
 
-/// First byte of each sentence and the byte behind it, without the blanks around.
-fn bounds(text: &str) -> Vec<(usize, usize)> {
-    let mut found: Vec<(usize, usize)> = Vec::new();
+/// The bytes of each sentence, without the blanks around.
+fn bounds(text: &str) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
     let mut open = None;
     for (from, piece) in text.split_sentence_bound_indices() {
         if piece.trim().is_empty() {
@@ -70,14 +60,14 @@ fn bounds(text: &str) -> Vec<(usize, usize)> {
         let to = from + piece.trim().len();
         let start = open.take().unwrap_or(from);
         let words = text.get(start..to).unwrap_or_default().unicode_words().take(LEAST_WORDS).count();
-        if words < LEAST_WORDS { open = Some(start) } else { found.push((start, to)) }
+        if words < LEAST_WORDS { open = Some(start) } else { found.push(start..to) }
     }
     // What is left belongs to what stands before it.
     if let Some(start) = open {
         let end = text.trim_end().len();
         match found.last_mut() {
-            Some((_, to)) => *to = end,
-            None => found.push((start, end)),
+            Some(last) => last.end = end,
+            None => found.push(start..end),
         }
     }
     found

@@ -17,19 +17,18 @@ use crate::terse;
 pub(crate) fn proposal_tables() -> String {
     let (setup, outcome): (Vec<_>, Vec<_>) = predicates().into_iter().partition(|test| test.role == ClauseRole::Setup);
     let tests = |rows: Vec<Test>| -> String {
-        let told = |form: &Value, meaning: &str| {
-            let line = signature(form);
+        let told = |test: &Test| {
+            let line = signature(&test.form);
             let said = line.split(' ').next().unwrap_or_default().replace('_', " ");
             // Some names say it all.
-            if PLAIN.contains(&name_of(form)) || meaning.trim_start_matches("the ").starts_with(&said) {
+            if test.shown == Shown::ByName || test.meaning.trim_start_matches("the ").starts_with(&said) {
                 line + "\n"
             } else {
-                format!("{line}: {meaning}\n")
+                format!("{line}: {}\n", test.meaning)
             }
         };
-        let (rare, usual): (Vec<Test>, Vec<Test>) =
-            rows.into_iter().partition(|test| RARE.contains(&name_of(&test.form)));
-        let each: String = usual.iter().map(|test| told(&test.form, test.meaning)).collect();
+        let (rare, usual): (Vec<Test>, Vec<Test>) = rows.into_iter().partition(|test| test.shown == Shown::Rarely);
+        let each: String = usual.iter().map(told).collect();
         let rare: Vec<String> = rare.iter().map(|test| signature(&test.form)).collect();
         if rare.is_empty() { each } else { format!("{each}Rarely, where asked for: {}\n", rare.join(", ")) }
     };
@@ -48,45 +47,6 @@ pub(crate) fn proposal_tables() -> String {
         tests(setup),
         tests(outcome),
     )
-}
-
-/// Tests of a few requests only: their names say what they are.
-const RARE: [&str; 10] = [
-    "meets_again",
-    "parallel",
-    "flow",
-    "density",
-    "surrounds",
-    "converges",
-    "door_opens",
-    "hidden_until",
-    "before",
-    "on_time",
-];
-
-/// Tests whose names and values say all that an author needs.
-const PLAIN: [&str; 12] = [
-    "runs_away",
-    "gives_way",
-    "leaves",
-    "enters",
-    "stays_aside",
-    "formation",
-    "walks_together",
-    "encounter_at",
-    "blocks",
-    "robot_arrives",
-    "abreast",
-    "meets",
-];
-
-/// The name of a test.
-fn name_of(form: &Value) -> &str {
-    match form {
-        Value::Object(members) => members.keys().next().map_or("", String::as_str),
-        Value::String(name) => name,
-        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Array(_) => "",
-    }
 }
 
 /// How the humans of a proposal go, by their relations to the robot's way: a line for each that there is.
@@ -230,14 +190,36 @@ struct Test {
     form: Value,
     meaning: &'static str,
     role: ClauseRole,
+    shown: Shown,
+}
+
+/// How much of a test a prompt shows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shown {
+    /// Its name, its values and what it means.
+    InFull,
+    /// Name and values, which say all that an author needs.
+    ByName,
+    /// Name and values in one line with the other tests of a few requests only.
+    Rarely,
+}
+
+impl Test {
+    fn by_name(self) -> Self {
+        Self { shown: Shown::ByName, ..self }
+    }
+
+    fn rarely(self) -> Self {
+        Self { shown: Shown::Rarely, ..self }
+    }
 }
 
 fn setup(test: &Predicate, meaning: &'static str) -> Test {
-    Test { form: json!(test), meaning, role: ClauseRole::Setup }
+    Test { form: json!(test), meaning, role: ClauseRole::Setup, shown: Shown::InFull }
 }
 
 fn outcome(test: &Predicate, meaning: &'static str) -> Test {
-    Test { form: json!(test), meaning, role: ClauseRole::Outcome }
+    Test { form: json!(test), meaning, role: ClauseRole::Outcome, shown: Shown::InFull }
 }
 
 fn other() -> HumanId {
@@ -317,8 +299,8 @@ fn predicates() -> Vec<Test> {
     let group = GroupId(1);
     vec![
         setup(&Predicate::Humans { count: 2 }, "so many are there all the time"),
-        setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter"),
-        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for"),
+        setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter").by_name(),
+        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for").rarely(),
         setup(&Predicate::HeadOn { human }, "comes straight at the robot"),
         setup(
             &Predicate::Crosses { human, gap_s: 3.0 },
@@ -336,36 +318,39 @@ fn predicates() -> Vec<Test> {
             },
             "goes behind the leader",
         ),
-        setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot"),
-        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it"),
+        setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot").by_name(),
+        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it").rarely(),
         setup(
             &Predicate::Flow { count: 4, within_m: 4.0, angle_deg: [0.0, 30.0] },
             "so many walk by at such angles to the robot's heading",
-        ),
-        setup(&Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 }, "people per m² round the robot"),
-        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once"),
-        setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time"),
-        setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way"),
+        )
+        .rarely(),
+        setup(&Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 }, "people per m² round the robot")
+            .rarely(),
+        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once").rarely(),
+        setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time").rarely(),
+        setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way").by_name(),
         setup(
             &Predicate::Looks { human, for_s: 2.0 },
             "stands and looks at the robot; `for_s` about half of its rule's `for`",
         ),
         setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still"),
-        setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot"),
-        setup(&Predicate::GivesWay { human }, "leaves the robot's way free"),
+        setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot").by_name(),
+        setup(&Predicate::GivesWay { human }, "leaves the robot's way free").by_name(),
         setup(
             &Predicate::Reacts { human, when: vec![Trigger::RobotNear(3.0)], act: Action::StandStill, within_s: 2.0 },
             "the action follows the triggers",
         ),
         setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it"),
-        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door"),
-        setup(&Predicate::StaysAside { human }, "stands beside the way, never in it"),
+        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door").by_name(),
+        setup(&Predicate::StaysAside { human }, "stands beside the way, never in it").by_name(),
         setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door"),
-        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door"),
-        setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near"),
-        setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near"),
-        setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together"),
-        setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together"),
+        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door").by_name(),
+        setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near")
+            .rarely(),
+        setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near").rarely(),
+        setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together").by_name(),
+        setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together").by_name(),
         setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line"),
         setup(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
@@ -374,14 +359,16 @@ fn predicates() -> Vec<Test> {
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: false },
             "is at its encounter first, or with at_door through the door",
-        ),
+        )
+        .rarely(),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place",
-        ),
-        setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time"),
+        )
+        .by_name(),
+        setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time").rarely(),
         setup(&Predicate::Plausible, "everybody moves as people do"),
-        outcome(&Predicate::RobotArrives, "the robot gets to its goal"),
+        outcome(&Predicate::RobotArrives, "the robot gets to its goal").by_name(),
         outcome(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance"),
         outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out"),
         outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in"),

@@ -49,7 +49,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
         }
         FactKind::Relates { human, relation } => {
             let found = proposal.human(*human)?.relation;
-            // Who comes out and crosses the robot's way does both.
+            // A human who comes out and crosses the robot's way does both.
             let crosses =
                 |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if who == human);
             let both = (found, *relation) == (socrates_model::Relation::Leaving, socrates_model::Relation::Crossing)

@@ -142,13 +142,13 @@ pub enum FactKind {
     Pattern(String),
     /// Words of the request, as an author that reads it itself gave them; the clauses that name the fact as their source say what they mean.
     Asked {
-        /// Who does it; nobody for what holds of the whole scene.
+        /// The agent that does it; none for what holds of the whole scene.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         of: Option<AgentId>,
     },
 }
 
-/// Who read the texts of a request.
+/// The reader of a request's texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReadBy {
@@ -200,7 +200,7 @@ pub struct ReadHuman {
 pub struct Reading {
     /// Format number, see [`crate::FORMAT`].
     pub format: u32,
-    /// Who read the texts. Default the grammar.
+    /// The reader of the texts. Default the grammar.
     #[serde(default, skip_serializing_if = "ReadBy::is_grammar")]
     pub by: ReadBy,
     /// Card id of the pattern the text was recognized as, if any.

@@ -1,11 +1,13 @@
 //! Statements: what became of each piece of a request's texts. Together they account for every word that says something.
 
 use std::fmt;
+use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::{Message, Span};
+use crate::request::Request;
 
 /// A text of the request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -22,6 +24,16 @@ pub enum TextKey {
 impl TextKey {
     /// The texts, in the order in which they are shown.
     pub const ALL: [Self; 3] = [Self::RoughScenario, Self::Task, Self::SocialContext];
+
+    /// The text of a request; empty where it has none.
+    #[must_use]
+    pub fn text_of(self, request: &Request) -> &str {
+        match self {
+            Self::RoughScenario => request.rough_scenario.as_deref().unwrap_or_default(),
+            Self::Task => &request.task,
+            Self::SocialContext => &request.social_context,
+        }
+    }
 
     /// The key in the request.
     #[must_use]
@@ -130,7 +142,29 @@ pub struct Statement {
     pub waived: bool,
 }
 
+/// Whether a quote stands in a text so that it has all of these bytes.
+#[must_use]
+pub fn covers(text: &str, quote: &str, bytes: &Range<usize>) -> bool {
+    !quote.is_empty()
+        && text.match_indices(quote).any(|(from, _)| from <= bytes.start && bytes.end <= from + quote.len())
+}
+
 impl Statement {
+    /// Whether it stands in the same text as a span, and has a character in common with that.
+    #[must_use]
+    pub fn meets(&self, at: TextKey, span: Span) -> bool {
+        self.at == at && self.span.overlaps(span)
+    }
+
+    /// The same, given up where it is a wish that is not in the run and `waive` of the request has its words.
+    #[must_use]
+    pub fn waived_by(mut self, request: &Request) -> Self {
+        let text = self.at.text_of(request);
+        let is_given_up = |bytes: Range<usize>| request.waive.iter().any(|quote| covers(text, quote, &bytes));
+        self.waived = self.is_unplayed() && self.span.bytes(text).is_some_and(is_given_up);
+        self
+    }
+
     /// Whether it is a wish that is not in the run, and that nobody has given up.
     #[must_use]
     pub const fn is_missing(&self) -> bool {

@@ -8,7 +8,7 @@ use crate::way::{LEAST_M, approach, is_straight};
 
 /// Ways this near to a door are looked at first, m.
 const NEAR_M: f64 = 8.0;
-/// So many places of ways are tried, the nearest first, before a door is led round something.
+/// Places of ways that are tried, the nearest first, before a door is led round something.
 const SEEN_MOST: usize = 400;
 
 /// Adds the places on open floor, and leads what ends at its rim to them.

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde_json::json;
-use socrates_model::{DoorKind, DoorOpens, Grid};
+use socrates_maps::{EXTRA, GRAPH, written};
+use socrates_model::{Grid, Point};
 
 use crate::annotate::Annotation;
 
@@ -13,69 +14,22 @@ use crate::annotate::Annotation;
 #[must_use]
 pub fn files(annotation: &Annotation, grid: &Grid) -> BTreeMap<String, Vec<u8>> {
     BTreeMap::from([
-        ("scene_graph.json".to_owned(), graph_json(annotation, grid).into_bytes()),
-        ("location.toml".to_owned(), location_toml(annotation).into_bytes()),
+        (GRAPH.to_owned(), graph_json(annotation, grid).into_bytes()),
+        (EXTRA.to_owned(), location_toml(annotation).into_bytes()),
         ("annotation.json".to_owned(), annotation_json(annotation).into_bytes()),
     ])
 }
 
 fn graph_json(annotation: &Annotation, grid: &Grid) -> String {
-    let quoted = |text: &str| serde_json::Value::from(text).to_string();
-    let nodes: Vec<String> = annotation
-        .graph
-        .nodes()
-        .iter()
-        .map(|node| {
-            let (px, py) = grid.pixel_from_world(&node.at);
-            let (id, kind) = (quoted(node.id.as_str()), quoted(&node.kind));
-            format!("    {{\"id\": {id}, \"type\": {kind}, \"pos\": [{px:.2}, {py:.2}]}}")
-        })
-        .collect();
-    let links: Vec<String> = annotation
-        .graph
-        .edges()
-        .iter()
-        .map(|edge| {
-            let (kind, from, to) = (quoted(&edge.kind), quoted(edge.from.as_str()), quoted(edge.to.as_str()));
-            format!("    {{\"type\": {kind}, \"source\": {from}, \"target\": {to}}}")
-        })
-        .collect();
-    format!(
-        "{{\n  \"directed\": false,\n  \"multigraph\": false,\n  \"graph\": {{}},\n  \"nodes\": [\n{}\n  ],\n  \"links\": [\n{}\n  ]\n}}\n",
-        nodes.join(",\n"),
-        links.join(",\n")
-    )
+    let (nodes, edges) = (annotation.graph.nodes(), annotation.graph.edges());
+    let nodes = nodes.iter().map(|node| (node.id.as_str(), node.kind.as_str(), grid.pixel_from_world(&node.at)));
+    let links = edges.iter().map(|edge| (edge.kind.as_str(), edge.from.as_str(), edge.to.as_str()));
+    written::graph_json(nodes, links, 2)
 }
 
 fn location_toml(annotation: &Annotation) -> String {
-    let quoted = |text: &str| toml::Value::from(text).to_string();
-    let mut out = format!("description = {}\n", quoted(&annotation.description));
-    for door in &annotation.doors {
-        let kind = match door.kind {
-            DoorKind::Room => "room",
-            DoorKind::Elevator => "elevator",
-        };
-        // Doors that were found stand open, those of elevators open for the robot; nothing else is made here.
-        let opens = match &door.opens {
-            DoorOpens::RobotNear(m) => format!("{{ robot_near = {m:?} }}"),
-            DoorOpens::Always
-            | DoorOpens::Never
-            | DoorOpens::AtTimes(_)
-            | DoorOpens::Near(_)
-            | DoorOpens::OnEvent(_) => "\"always\"".to_owned(),
-        };
-        let inside: Vec<String> = door.inside.iter().map(|id| quoted(id.as_str())).collect();
-        let at = |point: &socrates_model::Point| format!("[{:.3}, {:.3}]", point.x, point.y);
-        out.push_str(&format!(
-            "\n[[doors]]\nid = {}\nkind = \"{kind}\"\nfrom = {}\nto = {}\nopens = {opens}\nhold_s = {:?}\ninside = [{}]\n",
-            quoted(&door.id),
-            at(&door.from),
-            at(&door.to),
-            door.hold_s,
-            inside.join(", ")
-        ));
-    }
-    out
+    let at = |point: &Point| format!("[{:.3}, {:.3}]", point.x, point.y);
+    written::location_toml(&annotation.description, &annotation.doors, at)
 }
 
 fn annotation_json(annotation: &Annotation) -> String {

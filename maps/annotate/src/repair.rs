@@ -14,7 +14,7 @@ const SHORTCUT_MOST_M: f64 = 8.0;
 const SHORTCUT_CLEAR_M: f64 = 1.2;
 /// How many times as long the way along the others is at least.
 const SHORTCUT: f64 = 1.5;
-/// So many pairs of places are tried to join two parts.
+/// Pairs of places that are tried to join two parts.
 const REPAIRS: usize = 4;
 
 impl Sketch {

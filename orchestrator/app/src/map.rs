@@ -121,7 +121,7 @@ pub fn annotate(talk: &Printer, given: &Path, options: &AnnotateOptions) -> Resu
     };
     let map = raw_map::annotated(&file, &said)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-annotated", map.location.name)));
-    if out.join(raw_map::GRAPH).exists() {
+    if out.join(socrates_maps::GRAPH).exists() {
         return Err(Complaint::input(
             format!("`{}` has a scene graph already, which is left as it is", out.display()),
             "name another folder with `--out`, or remove its scene_graph.json",

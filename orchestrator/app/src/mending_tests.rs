@@ -61,10 +61,6 @@ const SPOILS: [(&str, Stage, Spoil); 6] = [
     ("one of a group stands elsewhere", Stage::Paths, apart),
 ];
 
-fn is_sign(rule: &Rule) -> bool {
-    rule.gesture.is_some()
-}
-
 fn waits_for_robot(rule: &Rule) -> bool {
     rule.when.iter().any(|trigger| matches!(trigger, Trigger::RobotSays(_)))
 }
@@ -83,7 +79,7 @@ fn no_signs(made: &mut Made, _: &Location) -> Option<()> {
         return None;
     }
     for human in &mut made.proposal.humans {
-        human.rules.retain(|rule| !is_sign(rule));
+        human.rules.retain(|rule| rule.gesture.is_none());
     }
     compiled(made, |_| ())
 }

@@ -5,17 +5,12 @@ use std::path::{Path, PathBuf};
 
 use socrates_annotate::{Annotation, Options};
 use socrates_draw::MapNote;
-use socrates_maps::Kept;
+use socrates_maps::{GRAPH, Kept, MAP};
 use socrates_model::{Fault, Location};
 
 use crate::exit::Complaint;
 use crate::files;
 use crate::words::plural;
-
-/// Name of the map's description in a location folder.
-const MAP: &str = "map.yaml";
-/// Name of the scene graph in a location folder.
-pub(crate) const GRAPH: &str = "scene_graph.json";
 
 /// A map with what was found on it.
 #[derive(Debug, Clone)]
@@ -30,14 +25,17 @@ pub(crate) struct RawMap {
 
 /// The map file that a name means, if it means a map without a scene graph: a YAML file, or a folder with one.
 pub(crate) fn file_of(path: &Path) -> Option<PathBuf> {
-    let yaml = |path: &Path| path.extension().is_some_and(|ext| ext == "yaml" || ext == "yml");
     if path.is_file() {
-        return yaml(path).then(|| path.to_path_buf());
+        return is_yaml(path).then(|| path.to_path_buf());
     }
     if path.join(GRAPH).exists() {
         return None;
     }
     file_in(path)
+}
+
+fn is_yaml(path: &Path) -> bool {
+    path.extension().is_some_and(|ext| ext == "yaml" || ext == "yml")
 }
 
 /// The map file of a folder: `map.yaml`, or the only YAML file.
@@ -47,7 +45,7 @@ fn file_in(folder: &Path) -> Option<PathBuf> {
         return Some(usual);
     }
     let entries = std::fs::read_dir(folder).ok()?.filter_map(Result::ok).map(|entry| entry.path());
-    let mut yaml = entries.filter(|path| path.extension().is_some_and(|ext| ext == "yaml" || ext == "yml"));
+    let mut yaml = entries.filter(|path| is_yaml(path));
     let only = yaml.next()?;
     yaml.next().is_none().then_some(only)
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::dialect::Rung;
 use crate::limits::Limits;
 
-/// Who speaks a turn.
+/// The speaker of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Speaker {
@@ -21,7 +21,7 @@ pub enum Speaker {
 /// One turn of a conversation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Turn {
-    /// Who speaks.
+    /// The speaker.
     pub speaker: Speaker,
     /// What is said.
     pub text: String,

@@ -1,4 +1,4 @@
-//! Who serves, and how far each of them enforces the form of an answer.
+//! Kinds of servers, and how far each of them enforces the form of an answer.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! Who hears how far an answer is while it comes.
+//! A listener that hears how far an answer is while it comes.
 
 use std::fmt;
 use std::sync::Arc;

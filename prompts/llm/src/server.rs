@@ -16,7 +16,7 @@ pub(crate) enum Reply {
     Whole(u16, Vec<(&'static str, &'static str)>, String),
     /// An answer that claims more bytes than come before the connection closes.
     Torn(String),
-    /// So many bytes, without a length.
+    /// A number of bytes, without a length.
     Flood(usize),
     /// One byte after the other, for ever.
     Drip,

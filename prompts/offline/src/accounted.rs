@@ -46,10 +46,7 @@ pub(crate) fn account(question: &Question, reading: &Reading, proposal: &Proposa
 }
 
 fn share(sentence: &Sentence, reading: &Reading, proposal: &Proposal, told: &mut Vec<String>) -> Value {
-    let overlaps = |other: &&Statement| {
-        other.at == sentence.at && other.span.from < sentence.span.to && sentence.span.from < other.span.to
-    };
-    let own: Vec<&Statement> = reading.statements.iter().filter(overlaps).collect();
+    let own: Vec<&Statement> = reading.statements.iter().filter(|one| one.meets(sentence.at, sentence.span)).collect();
     let ids = own.iter().flat_map(|one| if let Became::Read { facts, .. } = &one.became { &facts[..] } else { &[] });
     let mut claims = Vec::new();
     for id in ids {

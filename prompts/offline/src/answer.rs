@@ -70,7 +70,7 @@ fn text<T: serde::Serialize>(answer: &T) -> String {
 
 fn behaviors(question: &Question, proposal: &Proposal) -> String {
     let mut humans = Map::new();
-    for human in proposal.humans.iter().filter(|human| question.only.is_empty() || question.only.contains(&human.id)) {
+    for human in question.humans(proposal) {
         let rules = mended::rules(human, proposal, &question.feedback);
         humans.insert(human.id.to_string(), json!({ "description": human.behavior, "rules": rules }));
     }

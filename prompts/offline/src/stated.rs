@@ -75,15 +75,12 @@ pub fn dispute(request: &Request, location: &Location, reading: &mut Reading) {
 
 /// What the grammar reads in the words of a statement of somebody's doing, as lines of a form.
 fn acts(grammar: &Reading, statement: &Statement) -> Vec<String> {
-    let overlaps = |other: &&Statement| {
-        other.at == statement.at && other.span.from < statement.span.to && statement.span.from < other.span.to
-    };
     let stands = |fact: &&Fact| !fact.quote.is_empty() && statement.quote.contains(&fact.quote);
     if !grammar.facts.iter().filter(stands).any(|fact| is_act(&fact.kind)) {
         return Vec::new();
     }
-    let lines = grammar.statements.iter().filter(overlaps).map(|other| &other.became);
-    lines
+    let own = grammar.statements.iter().filter(|other| other.meets(statement.at, statement.span));
+    own.map(|other| &other.became)
         .filter_map(|became| if let Became::Read { lines, .. } = became { Some(lines.clone()) } else { None })
         .flatten()
         .collect()

@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::statement::{Became, Statement};
-use socrates_model::{Fact, FactKind, Fault, FaultCode, Proposal, Reading, Request, Where};
-use socrates_prompts::{Account, Claim, Question, Sentence, Share, sentences, text_of};
+use socrates_model::{Fact, FactKind, Fault, FaultCode, Proposal, Reading, Where};
+use socrates_prompts::{Account, Claim, Question, Sentence, Share, sentences};
 
 /// Most sentences or quotes that one message names.
 const MOST: usize = 4;
@@ -82,9 +82,8 @@ pub(crate) fn reading(account: &Account, proposal: &Proposal, question: &Questio
         reading.humans = proposal.humans.iter().map(read_human).collect();
     }
     socrates_offline::dispute(&question.request, &question.location, &mut reading);
-    for statement in &mut reading.statements {
-        statement.waived = statement.is_unplayed() && is_waived(statement, &question.request);
-    }
+    reading.statements =
+        reading.statements.into_iter().map(|statement| statement.waived_by(&question.request)).collect();
     reading
 }
 
@@ -125,13 +124,6 @@ fn statements(sentence: &Sentence, share: &Share, proposal: &Proposal) -> Vec<St
     }
 }
 
-/// Whether the request gives up the words of a statement.
-fn is_waived(statement: &Statement, request: &Request) -> bool {
-    let text = text_of(request, statement.at);
-    let stands = |quote: &String| text.contains(quote.as_str()) && quote.contains(statement.quote.as_str());
-    request.waive.iter().any(stands)
-}
-
 /// What of the scenario serves a claim, in words.
 fn lines(claim: &Claim, proposal: &Proposal) -> Vec<String> {
     let serve = proposal.expected_events.iter().filter(|clause| clause.source == claim.fact);
@@ -148,7 +140,7 @@ mod tests {
     use crate::offline::Offline;
     use serde_json::{Value, json};
     use socrates_model::reading::ReadBy;
-    use socrates_model::{FaultCode, Location};
+    use socrates_model::{FaultCode, Location, Request};
 
     const ROUGH: &str =
         "It is a busy morning. A visitor comes towards the robot in the corridor and stops when the robot is near.";

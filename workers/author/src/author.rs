@@ -13,7 +13,7 @@ pub struct Answer {
     pub text: String,
     /// Tokens in and out; 0 for authors without any.
     pub tokens: (u64, u64),
-    /// Who answered, for provenance: `offline/1`, `openai:<model as the server names it>`.
+    /// Name of the author that answered, for provenance: `offline/1`, `openai:<model as the server names it>`.
     pub model: String,
     /// Whether the text was cut by a limit.
     pub cut: bool,

@@ -56,8 +56,9 @@ impl Author for Compiled {
 
 /// The rules of the proposal as an answer to the behaviors question.
 fn answer(question: &Question, proposal: &Proposal) -> String {
-    let asked = proposal.humans.iter().filter(|human| question.only.is_empty() || question.only.contains(&human.id));
-    let humans: serde_json::Map<String, serde_json::Value> = asked
+    let humans: serde_json::Map<String, serde_json::Value> = question
+        .humans(proposal)
+        .into_iter()
         .map(|human| (human.id.to_string(), json!({"description": human.behavior, "rules": human.rules})))
         .collect();
     json!({ "humans": humans }).to_string()

@@ -1,4 +1,4 @@
-//! Who answers the authoring questions, and one attempt at an answer.
+//! The authors that answer the questions, and one attempt at an answer.
 //!
 //! ```text
 //! Question ─► Author::ask ─► text ─► parse (prompts) ─► check (checks) ─► artifact + exchange

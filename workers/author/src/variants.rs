@@ -64,7 +64,7 @@ fn variant(text: String, question: &Question) -> Variant {
 pub fn best(variants: &[Variant]) -> usize {
     let weight = |variant: &Variant| {
         let hard = hard(&variant.faults).len();
-        // Who cannot be read is not held against one fault only: nothing of it could be checked.
+        // A proposal that cannot be read has more than one fault: nothing of it could be checked.
         (variant.proposal.is_none(), hard, variant.faults.len() - hard)
     };
     let places = variants.iter().enumerate().min_by_key(|(place, variant)| (weight(variant), *place));
@@ -82,7 +82,7 @@ pub(crate) struct BySeed {
 impl Author for BySeed {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let mut first = self.inner.ask(question).await?;
-        // Who is shown a refused answer mends that one.
+        // An author that is shown a refused answer mends that one.
         if question.stage != Stage::Proposal || question.refused.is_some() {
             return Ok(first);
         }

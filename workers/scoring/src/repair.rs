@@ -128,7 +128,7 @@ fn by_predicate(clause: &Clause, finding: &Finding, ruled: bool) -> (FaultCode, 
     match &clause.predicate {
         _ if finding.early => (FaultCode::DEarly, Stage::Behaviors),
         predicate if is_meeting(predicate) => (FaultCode::DNoMeet, Stage::Paths),
-        // Who was never near could not act: that is for the paths.
+        // A human who was never near could not act: that is for the paths.
         Predicate::Blocks { .. }
         | Predicate::Looks { .. }
         | Predicate::RunsAway { .. }

@@ -412,7 +412,7 @@ fn a_place_that_is_named_is_judged_by_its_nodes() {
         report.clauses.iter().find(|clause| clause.id == "c5").unwrap().standing
     };
     assert_eq!(at("c"), Standing::Holds);
-    // Who stays inside is met before the door.
+    // A human who stays inside is met before the door.
     assert_eq!(at("d"), Standing::Holds);
     // Nobody is met there, and nobody comes out of it.
     assert_eq!(at("a"), Standing::Fails);

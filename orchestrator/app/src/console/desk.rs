@@ -17,7 +17,7 @@ const UNSAID: usize = 256;
 /// One turn of a prompt.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Turn {
-    /// Who speaks, as the program names it.
+    /// The speaker, as the program names it.
     pub(super) role: String,
     /// What is said.
     pub(super) text: String,

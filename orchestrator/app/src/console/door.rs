@@ -228,8 +228,7 @@ fn checked(schema: Option<&Value>, text: &str) -> Value {
 
 /// The JSON object inside a text that was pasted with words around it, where there is one.
 fn inner(text: &str) -> Option<String> {
-    let (from, to) = (text.find('{')?, text.rfind('}')?);
-    let inner = text.get(from..=to).filter(|inner| inner.len() < text.trim().len())?;
+    let inner = socrates_prompts::json::core(text).filter(|inner| inner.len() < text.trim().len())?;
     serde_json::from_str::<Value>(inner).ok().map(|_value| inner.to_owned())
 }
 

@@ -9,6 +9,7 @@ mod responses;
 pub(crate) use parts::Parts;
 
 use reqwest::header::HeaderMap;
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::chat::{ChatAnswer, ChatRequest, Speaker};
@@ -19,6 +20,17 @@ use crate::{estimate, ordered, waits};
 
 /// Longest piece of a server's own words that is passed on, characters.
 const WORDS: usize = 300;
+
+/// What both formats of one vendor say of the tokens of one direction.
+#[derive(Deserialize)]
+struct Details {
+    /// Of the input: those that came from the cache.
+    #[serde(default)]
+    cached_tokens: Option<u64>,
+    /// Of the output: those of thinking.
+    #[serde(default)]
+    reasoning_tokens: Option<u64>,
+}
 
 /// A request in the words of one format.
 pub(crate) struct Call<'a> {

@@ -4,7 +4,7 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::{Call, Usage, refused, unreadable};
+use super::{Call, Details, Usage, refused, unreadable};
 use crate::chat::{ChatAnswer, Detail, Speaker};
 use crate::dialect::Rung;
 use crate::error::{ChatError, Objection};
@@ -131,21 +131,9 @@ struct Counted {
     #[serde(default)]
     output_tokens: u64,
     #[serde(default)]
-    input_tokens_details: Option<InputDetails>,
+    input_tokens_details: Option<Details>,
     #[serde(default)]
-    output_tokens_details: Option<OutputDetails>,
-}
-
-#[derive(Deserialize)]
-struct InputDetails {
-    #[serde(default)]
-    cached_tokens: Option<u64>,
-}
-
-#[derive(Deserialize)]
-struct OutputDetails {
-    #[serde(default)]
-    reasoning_tokens: Option<u64>,
+    output_tokens_details: Option<Details>,
 }
 
 /// The answer in a successful body.

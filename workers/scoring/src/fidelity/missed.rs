@@ -9,7 +9,7 @@ use crate::tracks::MOVING_MPS;
 /// The sentence about a trigger that never held for a human: what the run had instead.
 pub(super) fn told(signals: &Signals<'_>, human: HumanId, trigger: &Trigger) -> String {
     let moments = signals.of(human);
-    let nearest_m = least(moments.iter().map(|moment| moment.distance_m));
+    let nearest_m = signals.nearest_m(human);
     match trigger {
         Trigger::RobotSays(gesture) => format!("the robot never says {gesture}: {}", unsaid(signals, *gesture)),
         Trigger::HumanSays(other, gesture) => format!("{other} never says {gesture}"),
@@ -75,7 +75,7 @@ fn instead(signals: &Signals<'_>, when: &RobotWhen) -> String {
             format!("{longest_s:.1} s at the longest: where it finds room beside somebody it passes")
         }
         RobotWhen::HumanNear(_) => {
-            let nearest_m = least(all().flatten().map(|moment| moment.distance_m));
+            let nearest_m = least(signals.moments.keys().map(|human| signals.nearest_m(*human)));
             format!("{nearest_m:.1} m at the nearest")
         }
         RobotWhen::HumanSays(gesture) => format!("nobody says {gesture} within 10 m"),

@@ -97,12 +97,12 @@ fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) 
 
 /// The finding where triggers never held together and were nearest to it at a moment: which of them did not, and what was true instead.
 pub(super) fn never_came(signals: &Signals<'_>, human: HumanId, when: &[Trigger], near: Mark) -> Finding {
-    let phrase = when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
+    let phrase = Trigger::phrases(when);
     let trigger = missed_at(signals, human, when, near.t);
     let instead = trigger.as_ref().map_or_else(String::new, |one| format!(": {}", missed::told(signals, human, one)));
     let text = format!("the reason of {human} never came ({phrase}){instead}");
-    let nearest_m = signals.of(human).iter().map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min);
-    Finding::never(near.margin, vec![near.t], text).missing(trigger.map(|trigger| Missed { trigger, nearest_m }))
+    let missed = trigger.map(|trigger| Missed { trigger, nearest_m: signals.nearest_m(human) });
+    Finding::never(near.margin, vec![near.t], text).missing(missed)
 }
 
 /// Of several triggers that never held together, the one that was farthest from it at this time.
@@ -167,7 +167,7 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let phrase = when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
+    let phrase = Trigger::phrases(when);
     let acts = spans(signals, human, act);
     let onsets: Vec<f64> = acts.iter().map(|(from, _)| *from).collect();
     let strict = marks(signals, human, when, 0.0);

@@ -75,11 +75,10 @@ pub(crate) fn since(signals: &Signals<'_>, human: HumanId, of: impl Fn(&Rule) ->
     if signals.of(human).is_empty() || rules.iter().any(|rule| rule.when.iter().all(|when| *when == Trigger::Always)) {
         return Ok(Since::START);
     }
-    let phrase = |rule: &Rule| rule.when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
     let reasons = rules.iter().map(|rule| (first_reason(signals, human, &rule.when), *rule));
     let came = reasons.clone().filter_map(|(reason, rule)| Some((reason.ok()?, rule)));
     if let Some((t, rule)) = came.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        return Ok(Since { t, phrase: Some(phrase(rule)) });
+        return Ok(Since { t, phrase: Some(Trigger::phrases(&rule.when)) });
     }
     let nearest = reasons.filter_map(|(reason, rule)| Some((reason.err()?, rule)));
     let Some((near, rule)) = nearest.max_by(|a, b| a.0.margin.total_cmp(&b.0.margin)) else { return Ok(Since::START) };

@@ -81,7 +81,7 @@ pub(super) fn step(signals: &Signals<'_>, human: HumanId, rule: &Rule, within_s:
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let phrase = rule.when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
+    let phrase = Trigger::phrases(&rule.when);
     let reason_s = match first_reason(signals, human, &rule.when) {
         Ok(t) => t,
         Err(near) => return never_came(signals, human, &rule.when, near),
