@@ -37,6 +37,23 @@ fn anew(stage: Stage, message: &str) -> Vec<Repair> {
 }
 
 #[test]
+fn what_a_person_says_of_compiled_behaviors_goes_to_the_proposal() {
+    let mut world = World::new();
+    let mut asked = spec("a");
+    asked.review = true;
+    asked.settings.insert("behaviors_by".to_owned(), "proposal".to_owned());
+    world.submit(vec![asked]);
+    world.pass(Stage::Proposal);
+    world.pass(Stage::Review);
+    for stage in [Stage::Paths, Stage::Behaviors] {
+        world.pass(stage);
+    }
+    let review = world.grant("person", Stage::Review);
+    world.send_report(Report { anew: anew(Stage::Behaviors, "kinder"), ..success(&review) });
+    assert_eq!(world.grant("w", Stage::Proposal).spec.feedback[0].message, "kinder".into());
+}
+
+#[test]
 fn a_person_may_send_the_proposal_back_or_change_it() {
     let mut world = looked_at("a");
     world.pass(Stage::Proposal);

@@ -28,7 +28,7 @@ impl Turn<'_> {
         if let Some(scenario) = self.scenario_mut(id) {
             scenario.verdicts.insert(revision, verdict);
         }
-        let wish = result.repair.as_ref().filter(|_| !is_realised(verdict));
+        let wish = result.repair.as_ref().filter(|_| verdict != Verdict::Realised);
         if let Some(repair) = wish
             && self.repair(id, BTreeMap::from([(repair.stage, repair.faults.clone())]))
         {
@@ -52,9 +52,13 @@ impl Turn<'_> {
         if result.anew.is_empty() || scenario.reviews >= self.state.policy.reviews || scenario.end.is_some() {
             return;
         }
+        // What is compiled is changed where it is written.
+        let compiled = is_compiled(scenario) && !scenario.spec.pinned.contains_key(&Role::Proposal);
         let mut targets: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
         for wish in &result.anew {
-            targets.entry(wish.stage).or_default().extend(wish.faults.iter().cloned());
+            let up = compiled && wish.stage == Stage::Behaviors;
+            let stage = if up { Stage::Proposal } else { wish.stage };
+            targets.entry(stage).or_default().extend(wish.faults.iter().cloned());
         }
         if self.redo(&key.scenario, &targets)
             && let Some(scenario) = self.scenario_mut(&key.scenario)
@@ -217,14 +221,11 @@ fn are_again(before: &[Fault], now: &[Fault]) -> bool {
     !now.is_empty() && now.iter().all(|fault| before.iter().any(|other| other.is_like(fault)))
 }
 
-const fn is_realised(verdict: Verdict) -> bool {
-    matches!(verdict, Verdict::Realised | Verdict::RealisedLate)
-}
-
-/// The revision that counts: the newest realised one, else the best, the newer of equals.
+/// The revision that counts: the best, the newer of equals; one that came in time before one that came late.
 fn best(scenario: &Scenario) -> Option<(u32, Verdict)> {
     let rank = |verdict: Verdict| match verdict {
-        Verdict::Realised | Verdict::RealisedLate => 4,
+        Verdict::Realised => 5,
+        Verdict::RealisedLate => 4,
         Verdict::RobotPrevented => 3,
         Verdict::NotTriggered => 2,
         Verdict::Contradicted => 1,

@@ -343,6 +343,23 @@ fn the_best_revision_counts_when_the_budget_ends() {
 }
 
 #[test]
+fn what_came_late_is_tried_again_and_stands_where_nothing_better_comes() {
+    for (then, settled) in [(Verdict::Realised, 1), (Verdict::Contradicted, 0)] {
+        let mut world = begun();
+        let scoring = world.reach_scoring();
+        let faults = vec![fault(FaultCode::DNoMeet, "2 s late")];
+        world.score(&scoring, Verdict::RealisedLate, Some(Repair { stage: Stage::Paths, faults }));
+        world.pass(Stage::Paths);
+        world.pass(Stage::Simulation);
+        let scoring = world.grant("w", Stage::Scoring);
+        world.score(&scoring, then, None);
+        let best = if settled == 1 { then } else { Verdict::RealisedLate };
+        assert_eq!(world.scenario("a").settled, Some(settled));
+        assert_eq!(world.scenario("a").end, Some(ScenarioEnd::Judged(best)));
+    }
+}
+
+#[test]
 fn an_older_verdict_stands_when_the_repair_comes_to_nothing() {
     let mut world = begun();
     let scoring = world.reach_scoring();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use socrates_model::fault::Fault;
 use socrates_model::job::{Item, JobKey, JobSpec, Look, Stage};
 use socrates_model::wire::{Hello, Priority, ScenarioSpec, Submit, Submitted, Welcome};
-use socrates_model::{Role, Run, ScenarioId};
+use socrates_model::{Digest, Role, Run, ScenarioId};
 
 use crate::event::{Answer, Token};
 use crate::pipeline;
@@ -180,7 +180,8 @@ impl Turn<'_> {
             if sent_back.is_empty() { former.map_or(0, |former| former.seed_revision) } else { revision };
         let refused = former.filter(|_| !sent_back.is_empty()).and_then(|former| {
             let artifacts = &former.result.as_ref()?.artifacts;
-            pipeline::refused(artifacts).or_else(|| pipeline::output(artifacts, Role::made_by(stage)?))
+            let left = || self.left_of(id, stage, revision.checked_sub(1)?);
+            pipeline::refused(artifacts).or_else(left).or_else(|| pipeline::output(artifacts, Role::made_by(stage)?))
         });
         let spec = JobSpec {
             key: key.clone(),
@@ -216,6 +217,14 @@ impl Turn<'_> {
         Some(key)
     }
 
+    /// What a person left of a stage's output at a look of this revision, where they changed it.
+    fn left_of(&self, id: &ScenarioId, stage: Stage, revision: u32) -> Option<Digest> {
+        let saw = |look: &Look| pipeline::is_after(Stage::Review, &(*look).into(), stage);
+        let looks = Look::ALL.into_iter().rev().filter(saw);
+        let mut found = looks.filter_map(|look| self.job(self.state.look(id, look, revision)?));
+        found.find_map(|job| pipeline::output(&job.result.as_ref()?.artifacts, Role::made_by(stage)?))
+    }
+
     /// Which job each input comes from.
     fn sources(&self, key: &JobKey) -> BTreeMap<Role, JobKey> {
         let written = [Stage::Proposal, Stage::Paths, Stage::Behaviors]
@@ -225,7 +234,8 @@ impl Turn<'_> {
         let mut sources: BTreeMap<Role, JobKey> = written.collect();
         // An author may read the request itself, and a person's wishes may change what it is read as.
         let told_by = pipeline::is_after(key.stage, &key.item, Stage::Proposal).then_some(Stage::Proposal);
-        sources.extend(self.writer(key, told_by).map(|teller| (Role::Reading, teller)));
+        let teller = self.writer(key, told_by).or_else(|| self.read_before(key));
+        sources.extend(teller.map(|teller| (Role::Reading, teller)));
         if key.stage == Stage::Review && key.item.look() == Some(Look::Proposal) {
             // The author may have proposed several; the person may take another.
             let author = self.state.place(&key.scenario, Stage::Proposal, &Item::Whole, key.revision);
@@ -243,6 +253,13 @@ impl Turn<'_> {
             Some((role, simulated.clone()))
         }));
         sources
+    }
+
+    /// The proposal that was made before this one: who reads the request is shown how they read it.
+    fn read_before(&self, key: &JobKey) -> Option<JobKey> {
+        let before = key.revision.checked_sub(1).filter(|_| key.stage == Stage::Proposal)?;
+        let former = self.state.place(&key.scenario, Stage::Proposal, &Item::Whole, before)?;
+        self.job(former).filter(|job| job.state == JobState::Succeeded).map(|_| former.clone())
     }
 
     /// The job whose version of a stage's output holds for the job `key`: the newest, and among equally new ones what a

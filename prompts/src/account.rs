@@ -9,8 +9,10 @@
 use std::collections::BTreeMap;
 
 use serde_json::Value;
-use socrates_model::statement::Background;
-use socrates_model::{AgentId, Fault, FaultCode, Where};
+use socrates_model::statement::{Background, Became, Statement};
+use socrates_model::{AgentId, FactKind, Fault, FaultCode, Reading, Request, Where};
+
+use crate::sentences::sentences;
 
 /// Member of an answer that holds the account.
 pub(crate) const MEMBER: &str = "reading";
@@ -25,6 +27,44 @@ const MOST_REASON: usize = 300;
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Account(pub BTreeMap<String, Share>);
 
+impl Account {
+    /// The account that a reading tells of: what its author said of each sentence of the request.
+    #[must_use]
+    pub fn of(reading: &Reading, request: &Request) -> Self {
+        let claim = |id: &String| {
+            let fact = reading.facts.iter().find(|fact| fact.id == *id)?;
+            let FactKind::Asked { of } = fact.kind else { return None };
+            Some(Claim { fact: id.clone(), quote: fact.quote.clone(), of })
+        };
+        let mut account = Self::default();
+        for sentence in sentences(request) {
+            let own = |statement: &&Statement| statement.at == sentence.at && statement.span == sentence.span;
+            let (mut claims, mut cannot, mut background) = (Vec::new(), None, None);
+            for statement in reading.statements.iter().filter(own) {
+                match &statement.became {
+                    Became::Read { facts, .. } => claims.extend(facts.iter().filter_map(claim)),
+                    Became::NotPlayed { why } => cannot = Some(why.to_string()),
+                    Became::Background(reason) | Became::Disputed { reason, .. } => background = Some(*reason),
+                    Became::NotRead { .. } => {}
+                }
+            }
+            let share = match background {
+                Some(reason) => Share::Background(reason),
+                None if claims.is_empty() && cannot.is_none() => continue,
+                None => Share::Asked { claims, cannot },
+            };
+            account.0.insert(sentence.id, share);
+        }
+        account
+    }
+
+    /// The lines of each sentence, as an answer writes them.
+    #[must_use]
+    pub fn lines(&self) -> BTreeMap<String, Vec<String>> {
+        self.0.iter().map(|(id, share)| (id.clone(), share.lines())).collect()
+    }
+}
+
 /// What becomes of one sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Share {
@@ -37,6 +77,24 @@ pub enum Share {
         /// Why a part of it, or all of it, is in no run.
         cannot: Option<String>,
     },
+}
+
+impl Share {
+    /// The share as an answer writes it: a line for each thing.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        match self {
+            Self::Background(reason) => vec![reason.name().to_owned()],
+            Self::Asked { claims, cannot } => {
+                let claim = |claim: &Claim| {
+                    let of = claim.of.map_or_else(|| ALL.to_owned(), |of| of.to_string());
+                    format!("{} {of}: {}", claim.fact, claim.quote)
+                };
+                let cannot = cannot.as_ref().map(|why| format!("{CANNOT}: {why}"));
+                claims.iter().map(claim).chain(cannot).collect()
+            }
+        }
+    }
 }
 
 /// One thing that a sentence asks for.

@@ -21,7 +21,7 @@ pub(crate) const ALL: [&str; 2] =
 
 /// An answer to the first example that is refused, with its fault: what a model gets wrong most easily.
 pub const REFUSED_PROPOSAL: &str =
-    "`\"setup\":[{\"test\":\"robot_keeps min_m=0.4\"}]`: P-VERIFY, it judges what the robot does; that is an outcome.";
+    "`\"setup\":[\"robot_keeps min_m=0.4\"]`: P-VERIFY, it judges what the robot does; that is an outcome.";
 /// The same of paths.
 pub const REFUSED_PATHS: &str = "`\"human_2\":{\"start\":\"n\",\"via\":[],\"meet\":\"c\",\"goal\":\"c\"}`: G-MEETEND, it ends where it meets the robot; one node more.";
 
@@ -42,11 +42,11 @@ struct Example {
 ///
 /// Empty where the data cannot be read, which a test keeps from happening.
 #[must_use]
-pub fn worked(stage: Stage, style: &Style, by: ReadBy) -> Vec<(Question, Value)> {
+pub fn worked(stage: Stage, style: &Style, by: ReadBy, keyed: bool) -> Vec<(Question, Value)> {
     ALL.iter()
         .filter_map(|text| serde_json::from_str::<Example>(text).ok())
         .map(|example| {
-            let answer = answer(&example, stage, style, by);
+            let answer = answer(&example, stage, style, by, keyed);
             let facts = if by.is_author() { Vec::new() } else { example.facts };
             let question = Question {
                 stage,
@@ -58,13 +58,14 @@ pub fn worked(stage: Stage, style: &Style, by: ReadBy) -> Vec<(Question, Value)>
         .collect()
 }
 
-fn answer(example: &Example, stage: Stage, style: &Style, by: ReadBy) -> Value {
+fn answer(example: &Example, stage: Stage, style: &Style, by: ReadBy, keyed: bool) -> Value {
     match stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-            let mut short = terse::shorten(&serde_json::to_value(&example.proposal).unwrap_or_default());
+            let mut short = terse::shorten(&serde_json::to_value(&example.proposal).unwrap_or_default(), keyed);
             if let Some(members) = short.as_object_mut() {
                 members.insert("analysis".to_owned(), json!("…"));
                 if by.is_author() {
+                    members.remove(terse::NOT_UNDERSTOOD);
                     members.insert(account::MEMBER.to_owned(), example.reading.clone());
                 }
             }
@@ -118,6 +119,29 @@ pub fn location() -> Location {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_example_has_the_whole_form_that_is_asked_for() {
+        let style = Style::default();
+        let mut seen = 0;
+        for (by, stage) in
+            [ReadBy::Grammar, ReadBy::Author].map(|by| [(by, Stage::Proposal), (by, Stage::Paths)]).concat()
+        {
+            for keyed in [true, false] {
+                for (question, answer) in worked(stage, &style, by, keyed) {
+                    // The other way of writing humans is for requests that state how many there are.
+                    if stage == Stage::Proposal && crate::schema::keyed(&question).is_some() != keyed {
+                        continue;
+                    }
+                    let missing = crate::validate::differences(&crate::answer_schema(&question, &style), &answer);
+                    let told: Vec<String> = missing.iter().map(|one| format!("{one:?}")).collect();
+                    assert_eq!(told, Vec::<String>::new());
+                    seen += 1;
+                }
+            }
+        }
+        assert_eq!(seen, 12);
+    }
 
     #[test]
     fn the_data_of_the_examples_can_be_read() {

@@ -72,6 +72,25 @@ pub fn repairs(text: &str) -> Vec<Fault> {
     vec![Fault::new(FaultCode::EExtra, "answer", message)]
 }
 
+/// Longest words around an answer that are kept, characters.
+const MAX_WORDS: usize = 500;
+
+/// What an author says around the JSON object, without the fences of code, as one line: perhaps what it has against the request. None
+/// where there are no two words.
+#[must_use]
+pub fn words_around(text: &str) -> Option<String> {
+    let core = core(text)?;
+    let before = text.find(core)?;
+    let around = [text.get(..before)?, text.get(before + core.len()..)?];
+    let words: Vec<&str> = around
+        .into_iter()
+        .flat_map(str::lines)
+        .filter(|line| !line.trim_start().starts_with("```"))
+        .flat_map(str::split_whitespace)
+        .collect();
+    (words.len() > 1).then(|| words.join(" ").chars().take(MAX_WORDS).collect())
+}
+
 /// A JSON value in which no object names a member twice: which of the two is meant nobody can say.
 struct Once(Value);
 
@@ -189,6 +208,16 @@ const fn kind(value: &Value) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_around_an_answer_are_kept_and_fences_are_not() {
+        let text = "I think that four people\nare too many here.\n```json\n{\"a\": 1}\n```\nPlease reconsider.";
+        assert_eq!(words_around(text).unwrap(), "I think that four people are too many here. Please reconsider.");
+        assert_eq!(
+            (words_around("```json\n{}\n```"), words_around("{}"), words_around("no answer")),
+            (None, None, None)
+        );
+    }
 
     fn code(text: &str) -> FaultCode {
         object(text).unwrap_err()[0].code

@@ -9,12 +9,14 @@ use socrates_model::{Digest, HumanProposal, Proposal};
 
 use crate::message::{Message, Picture, Role};
 use crate::question::Question;
-use crate::schema::answer_schema;
+use crate::schema::{answer_schema, keyed};
 use crate::style::{BehaviorsForm, Image, Mode, Style};
-use crate::{account, examples, feedback, order, place_text, sentences, shown, terse, trees, vocabulary, ways};
+use crate::{
+    account, examples, feedback, order, passing, place_text, sentences, shown, terse, trees, vocabulary, ways,
+};
 
 /// Version of the templates: rises with every change of what they ask for.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const SYSTEM: &str = include_str!("../templates/system.md");
 const PROPOSAL: &str = include_str!("../templates/proposal.md");
 const PATHS: &str = include_str!("../templates/paths.md");
@@ -99,7 +101,8 @@ impl Question {
             }
             Stage::Behaviors => messages.push(Message::text(Role::User, self.behaviors_outline(style))),
         }
-        messages.extend(feedback::messages(&self.feedback, shown::again(self, style).as_deref()));
+        let example = if naive { String::new() } else { passing::told(self, style) };
+        messages.extend(feedback::messages(&self.feedback, shown::again(self, style).as_deref(), &example));
         Prompt { messages, schema: (!naive).then(|| answer_schema(self, style)), template }
     }
 
@@ -129,7 +132,7 @@ impl Question {
                 question.request.rough_scenario.is_some() == guided
             }
         };
-        let shown: Vec<String> = examples::worked(self.stage, style, self.reading.by)
+        let shown: Vec<String> = examples::worked(self.stage, style, self.reading.by, keyed(self).is_some())
             .into_iter()
             .filter(|(question, _)| fits(question))
             .map(|(question, answer)| {
@@ -144,6 +147,8 @@ impl Question {
                     PROPOSAL,
                     [
                         ("reads", reads.into()),
+                        ("guided", guided.into()),
+                        ("pattern", self.reading.pattern.is_some().into()),
                         ("reasons", account::reasons().join(", ").into()),
                         ("tables", vocabulary::proposal_tables().into()),
                         ("examples", shown.into()),
@@ -269,6 +274,7 @@ impl Question {
                     ("side", json!(human.side)),
                     ("start", json!(human.start)),
                     ("goal", json!(human.goal)),
+                    ("speed_mps", json!(human.speed_mps)),
                 ];
                 if let Some(members) = told.as_object_mut() {
                     members
@@ -285,11 +291,12 @@ impl Question {
         let named = [Some(proposal.place), proposal.robot.start, proposal.robot.goal];
         let ends = proposal.humans.iter().flat_map(|human| [human.start, human.goal]);
         let nodes = place_text::places(&self.location, named.into_iter().chain(ends).flatten());
-        let mut outline = json!({"description": clean(&proposal.description, DESCRIPTION), "place": proposal.place, "humans": humans,
-            "robot": robot, "nodes_of": nodes});
-        if let (Some(members), Some(rough)) = (outline.as_object_mut(), &self.request.rough_scenario) {
-            members.insert("request".to_owned(), json!(clean(rough, ROUGH)));
-        }
+        // The request's own words say more than what was made of them; where there are none that stands for them.
+        let (key, words) = match &self.request.rough_scenario {
+            Some(rough) => ("request", clean(rough, ROUGH)),
+            None => ("description", clean(&proposal.description, DESCRIPTION)),
+        };
+        let outline = json!({key: words, "place": proposal.place, "humans": humans, "robot": robot, "nodes_of": nodes});
         let again: String = vocabulary::meetings(proposal)
             .iter()
             .map(|(human, times)| {

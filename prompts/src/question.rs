@@ -1,9 +1,12 @@
 //! The typed question: everything an author may look at.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use socrates_model::job::Stage;
 use socrates_model::{Fault, HumanId, Location, Proposal, Reading, Request};
 
+use crate::passing::Passing;
 use crate::style::Telling;
 
 /// One ask of an authoring stage.
@@ -29,6 +32,13 @@ pub struct Question {
     /// The newest refused answer.
     #[serde(default)]
     pub refused: Option<String>,
+    /// How the author read the request before, by sentence: lines of an [`Account`](crate::Account) that go with a refused answer that is
+    /// kept in full form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub account: Option<BTreeMap<String, Vec<String>>>,
+    /// What would have passed in place of the refused answer, where the program can tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub passing: Option<Passing>,
     /// Seed of the answer.
     pub seed: u64,
 }
@@ -38,7 +48,20 @@ impl Question {
     #[must_use]
     pub fn first(request: Request, reading: Reading, location: Location, seed: u64) -> Self {
         let (only, feedback) = (Vec::new(), Vec::new());
-        Self { stage: Stage::Proposal, request, reading, location, proposal: None, only, feedback, refused: None, seed }
+        let (proposal, refused, account, passing) = (None, None, None, None);
+        Self {
+            stage: Stage::Proposal,
+            request,
+            reading,
+            location,
+            proposal,
+            only,
+            feedback,
+            refused,
+            account,
+            passing,
+            seed,
+        }
     }
 
     /// The question as it is put to an author who is told so much of its refused answer. Where it is told nothing the
@@ -47,6 +70,7 @@ impl Question {
     pub fn telling(mut self, telling: Telling) -> Self {
         if telling != Telling::Named {
             self.feedback.clear();
+            self.passing = None;
         }
         if telling == Telling::Silent {
             self.refused = None;

@@ -59,22 +59,27 @@ fn text() -> Value {
     json!({"type": "string"})
 }
 
+/// How many humans the form has a member for, where their number is known; else they are listed.
+pub(crate) fn keyed(question: &Question) -> Option<u32> {
+    question.reading.facts.iter().find_map(|fact| {
+        if let FactKind::Humans(count) = fact.kind { Some(count).filter(|count| *count <= MOST_KEYED) } else { None }
+    })
+}
+
 /// The short form of a proposal. Humans are keyed by name where their number is known.
 fn proposal(question: &Question) -> Value {
     let graph = &question.location.graph;
     let found: BTreeSet<PlaceClass> = graph.nodes().iter().flat_map(|node| graph.classes(&node.id)).copied().collect();
     let place = json!({"$ref": "#/$defs/place"});
-    let count = question.reading.facts.iter().find_map(|fact| {
-        if let FactKind::Humans(count) = fact.kind { Some(count).filter(|count| *count <= MOST_KEYED) } else { None }
-    });
+    let count = keyed(question);
     let mut human = vec![
         ("behavior", text()),
         ("goal", or_null(&place)),
-        ("group", or_null(&json!({"type": "integer"}))),
+        ("group", json!({"type": ["integer", "null"]})),
         ("relation", json!({"type": "string", "enum": alternatives(&derived::<Relation>())})),
         ("role", text()),
         ("rules", list(&text())),
-        ("speed_mps", or_null(&json!({"type": "number"}))),
+        ("speed_mps", json!({"type": ["number", "null"]})),
         ("start", or_null(&place)),
     ];
     let humans = match count {
@@ -94,8 +99,7 @@ fn proposal(question: &Question) -> Value {
         ("members", list(&text())),
         ("standing", json!({"type": "boolean"})),
     ]);
-    let setup = object(&[("source", or_null(&text())), ("test", text())]);
-    let events = object(&[("outcome", list(&text())), ("setup", list(&setup))]);
+    let events = object(&[("outcome", list(&text())), ("setup", list(&text()))]);
     let robot = object(&[
         ("expected_behavior", text()),
         ("goal", or_null(&place)),
@@ -109,7 +113,6 @@ fn proposal(question: &Question) -> Value {
         ("groups", list(&group)),
         ("humans", humans),
         ("notes", list(&text())),
-        ("pattern", text()),
         ("place", place.clone()),
         ("robot", robot),
         ("title", text()),
@@ -117,7 +120,8 @@ fn proposal(question: &Question) -> Value {
     let reads = question.reading.by.is_author();
     // What a model could not use stands in its account.
     let account = if reads { (account::MEMBER, account_of(question)) } else { ("not_understood", list(&text())) };
-    let mut schema = object(&members.into_iter().chain([account]).collect::<Vec<_>>());
+    let pattern = question.reading.pattern.as_ref().map(|_| ("pattern", text()));
+    let mut schema = object(&members.into_iter().chain([account]).chain(pattern).collect::<Vec<_>>());
     let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
     let place = json!({"type": "string", "enum": places});
     define(&mut schema, &[("human", object(&human)), ("place", place)]);

@@ -6,8 +6,9 @@ use socrates_model::job::Stage;
 use socrates_model::{Behaviors, Paths, Proposal};
 
 use crate::question::Question;
+use crate::schema::keyed;
 use crate::style::{BehaviorsForm, Mode, Style};
-use crate::{order, terse, ways};
+use crate::{account, order, terse, ways};
 
 /// The refused answer of a question. What a stage had taken already, and what comes back to it after the simulation, is kept in full form
 /// and is put into that of the answer; other words come back as they are.
@@ -22,11 +23,16 @@ pub(crate) fn again(question: &Question, style: &Style) -> Option<String> {
 }
 
 /// A kept output of the question's stage in the form of its answer; none of other words.
-fn in_form(question: &Question, style: &Style, refused: &str) -> Option<Value> {
+pub(crate) fn in_form(question: &Question, style: &Style, refused: &str) -> Option<Value> {
     match question.stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
             let kept: Proposal = serde_json::from_str(refused).ok()?;
-            Some(terse::shorten(&serde_json::to_value(kept).ok()?))
+            let mut short = terse::shorten(&serde_json::to_value(kept).ok()?, keyed(question).is_some());
+            if let Some(members) = short.as_object_mut().filter(|_| question.reading.by.is_author()) {
+                members.remove(terse::NOT_UNDERSTOOD);
+                members.extend(question.account.iter().map(|account| (account::MEMBER.to_owned(), json!(account))));
+            }
+            Some(short)
         }
         Stage::Paths => {
             let kept: Paths = serde_json::from_str(refused).ok()?;
@@ -81,7 +87,7 @@ mod tests {
     fn paths_come_back_in_each_form() {
         for form in PathsForm::ALL {
             let style = Style { paths: *form, ..Style::default() };
-            for (mut asked, answer) in examples::worked(Stage::Paths, &style, socrates_model::ReadBy::Grammar) {
+            for (mut asked, answer) in examples::worked(Stage::Paths, &style, socrates_model::ReadBy::Grammar, true) {
                 let kept = crate::parse_paths(&answer.to_string(), &asked).unwrap();
                 asked.refused = Some(serde_json::to_string(&kept).unwrap());
                 let text = shown(&asked, &style);

@@ -14,10 +14,19 @@ use serde_json::{Map, Value, json};
 /// Members of tests that are lists of triggers or one action, not plain values.
 const LISTS: &str = "when";
 const ACTIONS: &str = "act";
+/// What an author could not use, who is told what was read.
+pub(crate) const NOT_UNDERSTOOD: &str = "not_understood";
+/// What stands in the line of a test before the id of the fact that it shows.
+const SOURCE: &str = "source=";
+/// Members of a human and of the robot that are written where they are nothing, too.
+const OF_HUMAN: [&str; 4] = ["group", "start", "goal", "speed_mps"];
+const OF_ROBOT: [&str; 2] = ["start", "goal"];
 
 /// Brings a short proposal into the full form; a full one passes unchanged. The robot's task is the request's.
 pub(crate) fn expand(value: &mut Value, task: &str) {
     let Some(members) = value.as_object_mut() else { return };
+    // Only a request that names a pattern is asked for one.
+    members.entry("pattern").or_insert_with(|| json!(socrates_model::Proposal::FREE));
     if let Some(humans) = members.get_mut("humans") {
         keyed_to_list(humans);
         for human in humans.as_array_mut().into_iter().flatten() {
@@ -35,7 +44,7 @@ pub(crate) fn expand(value: &mut Value, task: &str) {
     }
 }
 
-/// `{"setup": [{"test": …, "source": …}], "outcome": ["…"]}` becomes a list of clauses; so does every clause with a `test`.
+/// `{"setup": ["… source=f1"], "outcome": ["…"]}` becomes a list of clauses; so does every clause with a `test`.
 fn clauses(events: &mut Value) {
     if let Some(parts) = events.as_object_mut() {
         let mut list = Vec::new();
@@ -56,12 +65,26 @@ fn clauses(events: &mut Value) {
     for (index, clause) in events.as_array_mut().into_iter().flatten().enumerate() {
         let Some(clause) = clause.as_object_mut() else { continue };
         let Some(line) = clause.remove("test") else { continue };
+        let (line, source) = sourced(line);
+        if let Some(source) = source {
+            clause.insert("source".to_owned(), json!(source));
+        }
         let read = line.as_str().and_then(test).unwrap_or_else(|| line.clone());
         let text = crate::vocabulary::test_in_words(&read).map_or(line, Value::String);
         clause.insert("predicate".to_owned(), read);
         clause.entry("id").or_insert_with(|| json!(format!("c{}", index + 1)));
         clause.entry("text").or_insert(text);
     }
+}
+
+/// The line of a test without the fact that it shows, and that fact.
+fn sourced(line: Value) -> (Value, Option<String>) {
+    let Value::String(text) = &line else { return (line, None) };
+    let is_source = |word: &&str| word.starts_with(SOURCE);
+    let Some(word) = text.split_whitespace().find(is_source) else { return (line, None) };
+    let source = word.trim_start_matches(SOURCE).to_owned();
+    let rest: Vec<&str> = text.split_whitespace().filter(|word| !word.starts_with(SOURCE)).collect();
+    (json!(rest.join(" ")), Some(source))
 }
 
 /// `{"human_1": {…}}` becomes `[{"id": "human_1", …}]`, in order of the numbers.
@@ -213,52 +236,74 @@ pub(crate) fn rule_line(rule: &socrates_model::Rule) -> String {
     text
 }
 
-/// A full proposal in the short form, with humans by name: as a worked example shows it.
-pub(crate) fn shorten(proposal: &Value) -> Value {
+/// A full proposal in the short form, with every member of its form: as a worked example shows it. Humans are `keyed` by name, or listed.
+pub(crate) fn shorten(proposal: &Value, keyed: bool) -> Value {
     let mut short = proposal.clone();
     let Some(members) = short.as_object_mut() else { return short };
     members.remove("format");
     members.remove("author");
-    let mut humans = Map::new();
-    for human in members.get("humans").and_then(Value::as_array).into_iter().flatten() {
-        let Some(mut human) = human.as_object().cloned() else { continue };
-        let name = human.remove("id").as_ref().and_then(Value::as_str).unwrap_or_default().to_owned();
-        let rules = human.get("rules").cloned().and_then(|rules| serde_json::from_value(rules).ok());
-        let rules: Vec<socrates_model::Rule> = rules.unwrap_or_default();
-        human.insert("rules".to_owned(), rules.iter().map(rule_line).collect());
-        humans.insert(name, Value::Object(human));
+    if members.get("pattern") == Some(&json!(socrates_model::Proposal::FREE)) {
+        members.remove("pattern");
     }
-    members.insert("humans".to_owned(), Value::Object(humans));
+    let humans: Vec<Map<String, Value>> =
+        members.get("humans").and_then(Value::as_array).into_iter().flatten().filter_map(short_human).collect();
+    let humans = if keyed {
+        let named = |mut human: Map<String, Value>| {
+            let name = human.remove("id").as_ref().and_then(Value::as_str).unwrap_or_default().to_owned();
+            (name, Value::Object(human))
+        };
+        Value::Object(humans.into_iter().map(named).collect())
+    } else {
+        humans.into_iter().map(Value::Object).collect()
+    };
+    members.insert("humans".to_owned(), humans);
     if let Some(robot) = members.get_mut("robot").and_then(Value::as_object_mut) {
-        robot.remove("task");
-        let lines: Value = robot
-            .get("script")
-            .and_then(Value::as_array)
-            .into_iter()
-            .flatten()
-            .map(|rule| {
-                let part = |key: &str| rule.get(key).map(line).unwrap_or_default();
-                format!("{} -> {}", part("when"), part("act"))
-            })
-            .collect();
-        robot.insert("script".to_owned(), lines);
+        short_robot(robot);
     }
     let mut events = json!({"setup": [], "outcome": []});
     for clause in members.remove("expected_events").as_ref().and_then(Value::as_array).into_iter().flatten() {
         let test = clause.get("predicate").map(line).unwrap_or_default();
         let role = clause.get("role").and_then(Value::as_str).unwrap_or("setup");
-        let entry = match clause.get("source") {
-            Some(source) => json!({"source": source, "test": test}),
-            None if role == "setup" => json!({"test": test}),
-            None => json!(test),
-        };
+        let source = clause.get("source").and_then(Value::as_str).filter(|source| !source.is_empty());
+        let line = source.map_or_else(|| test.clone(), |source| format!("{test} {SOURCE}{source}"));
         if let Some(list) = events.get_mut(role).and_then(Value::as_array_mut) {
-            list.push(entry);
+            list.push(json!(line));
         }
     }
     members.insert("expected_events".to_owned(), events);
-    members.retain(|_, member| member.as_array().is_none_or(|list| !list.is_empty()));
+    for list in ["groups", "notes", NOT_UNDERSTOOD] {
+        members.entry(list).or_insert_with(|| json!([]));
+    }
     short
+}
+
+fn short_human(human: &Value) -> Option<Map<String, Value>> {
+    let mut human = human.as_object().cloned()?;
+    let rules = human.get("rules").cloned().and_then(|rules| serde_json::from_value(rules).ok());
+    let rules: Vec<socrates_model::Rule> = rules.unwrap_or_default();
+    human.insert("rules".to_owned(), rules.iter().map(rule_line).collect());
+    for name in OF_HUMAN {
+        human.entry(name).or_insert(Value::Null);
+    }
+    Some(human)
+}
+
+fn short_robot(robot: &mut Map<String, Value>) {
+    robot.remove("task");
+    let lines: Value = robot
+        .get("script")
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten()
+        .map(|rule| {
+            let part = |key: &str| rule.get(key).map(line).unwrap_or_default();
+            format!("{} -> {}", part("when"), part("act"))
+        })
+        .collect();
+    robot.insert("script".to_owned(), lines);
+    for name in OF_ROBOT {
+        robot.entry(name).or_insert(Value::Null);
+    }
 }
 
 #[cfg(test)]
@@ -287,7 +332,7 @@ mod tests {
     #[test]
     fn a_short_proposal_is_the_full_one() {
         let full = serde_json::to_value(proposal()).unwrap();
-        let mut short = shorten(&full);
+        let mut short = shorten(&full, true);
         expand(&mut short, "deliver");
         let read = crate::answer::prepared(short);
         let read: socrates_model::Proposal = crate::answer::typed(read).unwrap();

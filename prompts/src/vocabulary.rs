@@ -34,8 +34,8 @@ pub(crate) fn proposal_tables() -> String {
     };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
-         `latched` goes on when the triggers no longer hold. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
-         `meets human=human_1 within_m=2.5`, pairs as `gap_m=0.5..3.5`. Distances in m, times in s.\n\
+         `for`: so many seconds at most, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
+         `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. Distances in m, times in s.\n\
          Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
@@ -63,7 +63,10 @@ const WAYS: [(Relation, &str); 9] = [
     (Relation::Ahead, "the same direction, starting further on than the robot."),
     (Relation::Abreast, "the same nodes as the robot."),
     (Relation::Static, "one node, the encounter itself; start and goal are the same."),
-    (Relation::Leaving, "starts inside the room or elevator, comes out of its door, goes on past the encounter."),
+    (
+        Relation::Leaving,
+        "starts inside the room or elevator, comes out of its door, meets the robot in front of it, goes on.",
+    ),
     (Relation::Aside, "one node off the robot's path; no encounter."),
     (Relation::Staying, "one node inside the room or elevator; no encounter, or the robot's last node."),
 ];
@@ -99,7 +102,12 @@ fn signature(form: &Value) -> String {
     if line.contains(" when=") {
         return line;
     }
-    line.split(' ').map(|word| word.split('=').next().unwrap_or(word)).collect::<Vec<_>>().join(" ")
+    let part = |word: &str| match word.split_once('=') {
+        Some((name, value)) if value.contains("..") => format!("{name}=1..3"),
+        Some((name, _)) => name.to_owned(),
+        None => word.to_owned(),
+    };
+    line.split(' ').map(part).collect::<Vec<_>>().join(" ")
 }
 
 fn forms<T: Serialize>(values: &[T]) -> String {

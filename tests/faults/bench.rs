@@ -217,6 +217,8 @@ impl Bench {
             only: Vec::new(),
             feedback: spec.feedback.clone(),
             refused,
+            account: None,
+            passing: None,
             seed: spec.seed,
         };
         let asking = Asking { settings: spec.settings.clone(), attempt: grant.attempt };

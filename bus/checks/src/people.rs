@@ -12,7 +12,7 @@ use crate::list;
 /// Smallest and largest distance a trigger may name, m.
 pub(crate) const DISTANCE_M: (f64, f64) = (0.3, 15.0);
 /// Smallest and largest desired speed, m/s.
-const SPEED_MPS: (f64, f64) = (0.2, 1.8);
+pub(crate) const SPEED_MPS: (f64, f64) = (0.2, 1.8);
 
 /// Every fault about the humans and groups themselves.
 pub(crate) fn check(proposal: &Proposal) -> Vec<Fault> {
@@ -186,7 +186,7 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
 }
 
 /// P-OTHER: prose that depends on another human who is neither followed, heard nor of the same group.
-fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
+pub(crate) fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
     let tied = |id: HumanId| {
         let by_rule = human.rules.iter().any(|rule| {
             rule.act == Action::FollowHuman(id)

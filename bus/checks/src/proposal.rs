@@ -1,7 +1,7 @@
 //! The proposal against the request's reading and the map: `P-` faults.
 
 use socrates_model::{Fault, FaultCode, Location, NodeId, PlaceClass, Predicate, Proposal, Reading, RobotRule, Where};
-use socrates_model::{Gesture, HumanId, Trigger};
+use socrates_model::{Gesture, HumanId, SceneGraph, Trigger};
 
 use socrates_model::rule::{RobotDo, RobotWhen};
 
@@ -60,23 +60,30 @@ fn places(proposal: &Proposal, location: &Location) -> Vec<Fault> {
             faults.push(Fault::new(FaultCode::PPlace, Where::clause(&clause.id), message));
         }
     }
-    // Only words that are never used for another place are looked for in prose.
-    for (word, class) in [
+    for (word, class) in absent_in_prose(&proposal.description, graph) {
+        let message = format!(
+            "the description speaks of `{word}`, but the map has no `{class}`; its place classes: {}",
+            list(classes_of(graph))
+        );
+        faults.push(Fault::new(FaultCode::PPlace, "description", message));
+    }
+    faults
+}
+
+/// Words of a prose for places that the map lacks. Only words that are never used for another place are looked for.
+pub(crate) fn absent_in_prose(prose: &str, graph: &SceneGraph) -> Vec<(&'static str, PlaceClass)> {
+    [
         ("elevator", PlaceClass::Elevator),
         ("lift", PlaceClass::Elevator),
         ("intersection", PlaceClass::Intersection),
         ("blind corner", PlaceClass::BlindCorner),
-    ] {
-        let missing = nodes_of(graph, class).is_empty() && nodes_of(graph, nearby_class(class)).is_empty();
-        if says(&proposal.description, word) && missing {
-            let message = format!(
-                "the description speaks of `{word}`, but the map has no `{class}`; its place classes: {}",
-                list(classes_of(graph))
-            );
-            faults.push(Fault::new(FaultCode::PPlace, "description", message));
-        }
-    }
-    faults
+    ]
+    .into_iter()
+    .filter(|(word, class)| {
+        let missing = nodes_of(graph, *class).is_empty() && nodes_of(graph, nearby_class(*class)).is_empty();
+        says(prose, word) && missing
+    })
+    .collect()
 }
 
 /// A lobby alone makes an elevator scenario possible to speak of.
@@ -150,7 +157,7 @@ pub(crate) fn robot_says(proposal: &Proposal) -> Vec<Gesture> {
     said
 }
 
-fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
+pub(crate) fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
     let mut wrong = Vec::new();
     let mut known = |id: &HumanId| {
         if proposal.human(*id).is_none() {

@@ -15,8 +15,9 @@ pub(crate) fn check(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
     reading.facts.iter().filter_map(|fact| missing(fact, proposal)).collect()
 }
 
+/// What a proposal lacks of a fact.
 #[expect(clippy::too_many_lines, reason = "a table: one short arm for each kind of fact")]
-fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
+pub(crate) fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
     let quote = if fact.quote.is_empty() { String::new() } else { format!(" (asked for by \"{}\")", fact.quote) };
     let rough = |at: Where, message: String| Some(Fault::new(FaultCode::PRough, at, format!("{message}{quote}")));
     match &fact.kind {

@@ -46,8 +46,21 @@ pub fn annotated_map(location: &Location) -> String {
 /// The same with remarks: numbers at their places, and their texts in a list below.
 #[must_use]
 pub fn annotated_map_with(location: &Location, notes: &[MapNote]) -> String {
-    const SIZE: f64 = 1180.0;
-    let frame = Frame::around(location, SIZE, 860.0, (20.0, 46.0));
+    drawn(location, notes, &Frame::around(location, WIDEST_PX, TALLEST_PX, CORNER_PX))
+}
+
+/// The part of the map that its scene graph covers, with 3 m beside it: what a model is shown.
+#[must_use]
+pub fn annotated_graph(location: &Location) -> String {
+    drawn(location, &[], &Frame::of_graph(location, WIDEST_PX, TALLEST_PX, CORNER_PX))
+}
+
+/// Largest size of the floor, and its corner in the picture, px.
+const WIDEST_PX: f64 = 1180.0;
+const TALLEST_PX: f64 = 860.0;
+const CORNER_PX: (f64, f64) = (20.0, 46.0);
+
+fn drawn(location: &Location, notes: &[MapNote], frame: &Frame) -> String {
     let (w, h) = frame.size();
     let mut types: BTreeMap<&str, (PlaceClass, usize)> = BTreeMap::new();
     for node in location.graph.nodes() {
@@ -70,11 +83,11 @@ pub fn annotated_map_with(location: &Location, notes: &[MapNote]) -> String {
         &format!("{} nodes, {} ways", location.graph.nodes().len(), location.graph.edges().len()),
         &format!("font-size=\"15\" fill=\"{}\"", palette::QUIET),
     );
-    draw_floor(&mut svg, location, &frame);
-    draw_graph(&mut svg, location, &frame, "#9fb4cc", 2.2);
-    draw_doors(&mut svg, location, &frame);
+    draw_floor(&mut svg, location, frame);
+    draw_graph(&mut svg, location, frame, "#9fb4cc", 2.2);
+    draw_doors(&mut svg, location, frame);
     let mut labels = Labels::within(Area { x: 4.0, y: 34.0, w: width - 8.0, h: h + 24.0 });
-    labels.avoid(wall_areas(location, &frame));
+    labels.avoid(wall_areas(location, frame));
     for edge in location.graph.edges() {
         if let Some(points) = location.graph.edge_points(&edge.from, &edge.to) {
             labels.avoid_line(&points.iter().map(|p| frame.px(location, p)).collect::<Vec<_>>());
@@ -108,7 +121,7 @@ pub fn annotated_map_with(location: &Location, notes: &[MapNote]) -> String {
             &format!("font-size=\"12\" text-anchor=\"middle\" fill=\"{}\"", palette::DOOR),
         );
     }
-    draw_scale(&mut svg, location, &frame, 18.0);
+    draw_scale(&mut svg, location, frame, 18.0);
     for (row, line) in listed.iter().enumerate() {
         #[expect(clippy::cast_precision_loss, reason = "a list has few rows")]
         let y = h + 46.0 + 40.0 + rows * 20.0 + 22.0 + row as f64 * 18.0;
@@ -143,5 +156,29 @@ mod tests {
         assert!(svg.contains("1 (1.0, 1.0) m: a gap of 0.5 m"), "{svg}");
         assert_eq!(svg.matches("<circle").count(), bare.matches("<circle").count() + 1);
         assert!(note_lines(2, &notes[1], 400.0).len() > 2);
+    }
+
+    #[test]
+    fn a_model_is_shown_the_part_that_the_graph_covers() {
+        let mut location = crate::fixture::hall("hall");
+        let node = |id: &str, x: f64| socrates_model::GraphNode {
+            id: id.parse().unwrap(),
+            kind: "CORRIDOR".into(),
+            at: Point::new(x, 1.0),
+        };
+        location.graph = socrates_model::SceneGraph::new(vec![node("west", 1.0), node("east", 3.0)], Vec::new());
+        // A wide empty rest beside it: of the whole map the graph is a corner.
+        let (old, wide) = (location.grid.clone(), location.grid.width * 4);
+        location.grid.width = wide;
+        location.grid.cells = (0..old.height)
+            .flat_map(|row| (0..wide).map(move |column| (row, column)))
+            .map(|(row, column)| if column < old.width { old.at(column, row) } else { socrates_model::Cell::Free })
+            .collect();
+        let first = |svg: &str| svg.split("<circle ").nth(1).unwrap().split(" r=").next().unwrap().to_owned();
+        let (whole, part) = (annotated_map(&location), annotated_graph(&location));
+        assert!(first(&whole) != first(&part), "{} {}", first(&whole), first(&part));
+        for node in location.graph.nodes() {
+            assert!(part.contains(&format!(">{}<", node.id)), "{}", node.id);
+        }
     }
 }

@@ -24,6 +24,8 @@ pub struct Frame {
 const MARGIN_CELLS: usize = 6;
 /// Room kept beside the tracks of a focused picture, m: enough to see the walls people keep off.
 const FOCUS_ROOM_M: f64 = 2.5;
+/// Room beside a scene graph, m.
+const GRAPH_ROOM_M: f64 = 3.0;
 /// A focused picture shows at least so much, m a side: less would hide where it is.
 const FOCUS_LEAST_M: f64 = 9.0;
 /// A focus that keeps more than this share of the map is no focus.
@@ -58,13 +60,30 @@ impl Frame {
 
     /// The frame around these points and some room beside them; the whole map where that saves little.
     #[must_use]
+    pub fn focused(location: &Location, points: &[Point], max_w: f64, max_h: f64, at: (f64, f64)) -> Self {
+        Self::with_room(location, points, FOCUS_ROOM_M, (max_w, max_h), at)
+    }
+
+    /// The frame around the scene graph and 3 m beside it; the whole map where that saves little, or where there is no graph.
+    #[must_use]
+    pub fn of_graph(location: &Location, max_w: f64, max_h: f64, at: (f64, f64)) -> Self {
+        let points: Vec<Point> = location.graph.nodes().iter().map(|node| node.at).collect();
+        Self::with_room(location, &points, GRAPH_ROOM_M, (max_w, max_h), at)
+    }
+
     #[expect(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "cells of a map, clipped to its bounds"
     )]
-    pub fn focused(location: &Location, points: &[Point], max_w: f64, max_h: f64, at: (f64, f64)) -> Self {
+    fn with_room(
+        location: &Location,
+        points: &[Point],
+        room_m: f64,
+        (max_w, max_h): (f64, f64),
+        at: (f64, f64),
+    ) -> Self {
         let whole = Self::around(location, max_w, max_h, at);
         let (x0, y0, w, h) = whole.cells;
         let cell = location.grid.resolution_m.max(1e-6);
@@ -77,7 +96,7 @@ impl Frame {
         if left > right || !(left + right + top + bottom).is_finite() {
             return whole;
         }
-        let (room, least) = (FOCUS_ROOM_M / cell, FOCUS_LEAST_M / cell);
+        let (room, least) = (room_m / cell, FOCUS_LEAST_M / cell);
         let (wish_w, wish_h) = ((right - left + 2.0 * room).max(least), (bottom - top + 2.0 * room).max(least));
         let (wish_w, wish_h) = (wish_w.max(wish_h * max_w / max_h), wish_h.max(wish_w * max_h / max_w));
         let (left, width) = widened(left, right, wish_w, (x0 as f64, w as f64));

@@ -118,7 +118,7 @@ async fn hand_overs(talk: &Printer, config: &Config, folder: &Path) -> Result<Ve
     let work = folder.join("series");
     std::fs::create_dir_all(&work).map_err(|why| ours(why.to_string()))?;
     // Each only when the one before it is done: nothing waits for anything else.
-    let made = Making { talk, config, options: &options, work: &work, wanted: &wanted }.all(1).await?;
+    let made = Making { talk, config, options: &options, work: &work, wanted: &wanted }.all(1, None).await?;
     let mut found: Vec<f64> = wanted
         .iter()
         .skip(WARM_UP)

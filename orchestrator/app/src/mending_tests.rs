@@ -52,13 +52,15 @@ rough_scenario = "A nurse comes towards the robot in the corridor and signals wa
 const HASTY: &str = "a reaction comes without its reason";
 
 /// What is spoiled, and by which stage's answer it is mended.
-const SPOILS: [(&str, Stage, Spoil); 6] = [
+const SPOILS: [(&str, Stage, Spoil); 8] = [
     ("the robot says nothing", Stage::Proposal, silent),
     ("nobody signs to anybody", Stage::Proposal, no_signs),
     ("a reaction comes only within 0.3 m", Stage::Behaviors, short_sighted),
     (HASTY, Stage::Behaviors, hasty),
     ("somebody walks the other way", Stage::Paths, turned),
     ("one of a group stands elsewhere", Stage::Paths, apart),
+    ("somebody stands where the robot wants to end", Stage::Paths, in_the_way),
+    ("somebody starts in the robot's place", Stage::Paths, on_top),
 ];
 
 fn waits_for_robot(rule: &Rule) -> bool {
@@ -137,6 +139,20 @@ fn apart(made: &mut Made, location: &Location) -> Option<()> {
     for encounter in made.paths.encounters.iter_mut().filter(|encounter| encounter.human == last) {
         encounter.node = next.clone();
     }
+    Some(())
+}
+
+fn in_the_way(made: &mut Made, _: &Location) -> Option<()> {
+    let goal = made.paths.robot.last()?.clone();
+    let walks = made.proposal.humans.iter().find(|human| !human.relation.stands())?.id;
+    *made.paths.humans.get_mut(&walks)? = vec![goal];
+    Some(())
+}
+
+fn on_top(made: &mut Made, _: &Location) -> Option<()> {
+    let start = made.paths.robot.first()?.clone();
+    let way = made.paths.humans.values_mut().find(|way| way.len() > 1)?;
+    way.insert(0, start);
     Some(())
 }
 

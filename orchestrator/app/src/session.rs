@@ -75,10 +75,10 @@ pub(crate) struct Making<'a> {
 }
 
 impl Making<'_> {
-    /// Makes the scenarios, at most so many `at_once`.
-    pub(crate) async fn all(&self, at_once: usize) -> Result<Made, Complaint> {
+    /// Makes the scenarios, at most so many `at_once`; each goes to the bundler, where there is one, as soon as it is done.
+    pub(crate) async fn all(&self, at_once: usize, bundler: Option<&mut Bundler>) -> Result<Made, Complaint> {
         let hold = Hold::take(self.work)?;
-        self.carry_out(&hold, at_once, None, async {}).await?;
+        self.carry_out(&hold, at_once, bundler, async {}).await?;
         made(self.work, self.wanted, hold)
     }
 

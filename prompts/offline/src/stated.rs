@@ -2,7 +2,7 @@
 
 use socrates_model::reading::ReadBy;
 use socrates_model::statement::{Became, Statement, TextKey};
-use socrates_model::{Fact, FactKind, FaultCode, GroupId, HumanId, Location, Reading, Request};
+use socrates_model::{Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, Reading, Request};
 
 use crate::understand::{shortened, understood};
 
@@ -55,9 +55,13 @@ pub fn dispute(request: &Request, location: &Location, reading: &mut Reading) {
         reading.by = ReadBy::AuthorAlone;
         return;
     }
-    let doubtful = |statement: &Statement| {
-        statement.at == TextKey::RoughScenario && matches!(statement.became, Became::Background(_))
-    };
+    let background = |statement: &Statement| matches!(statement.became, Became::Background(_));
+    // What the robot is sent to, and the map lacks, is no mere errand.
+    for statement in reading.statements.iter_mut().filter(|statement| background(statement)) {
+        let found = lacking(&known.problems, statement);
+        statement.became = disputed(statement.became.clone(), found);
+    }
+    let doubtful = |statement: &Statement| statement.at == TextKey::RoughScenario && background(statement);
     // To account for every clause takes far longer than to read them.
     if !reading.statements.iter().any(doubtful) {
         return;
@@ -65,12 +69,30 @@ pub fn dispute(request: &Request, location: &Location, reading: &mut Reading) {
     let grammar = crate::read(&text, location);
     for statement in reading.statements.iter_mut().filter(|statement| doubtful(statement)) {
         let found = acts(&grammar, statement);
-        if let Became::Background(reason) = statement.became
-            && !found.is_empty()
-        {
-            statement.became = Became::Disputed { reason, found };
-        }
+        statement.became = disputed(statement.became.clone(), found);
     }
+}
+
+/// Background in which something was found.
+fn disputed(became: Became, found: Vec<String>) -> Became {
+    match became {
+        Became::Background(reason) if !found.is_empty() => Became::Disputed { reason, found },
+        Became::Background(_)
+        | Became::Read { .. }
+        | Became::NotPlayed { .. }
+        | Became::Disputed { .. }
+        | Became::NotRead { .. } => became,
+    }
+}
+
+/// What a statement of the task speaks of and no run on the map shows, and why.
+fn lacking(problems: &[Fault], statement: &Statement) -> Vec<String> {
+    let own = |problem: &&Fault| {
+        statement.at == TextKey::Task
+            && problem.at.is_key(TextKey::Task.name())
+            && problem.at.span.is_some_and(|span| span.overlaps(statement.span))
+    };
+    problems.iter().filter(own).map(|problem| problem.message.to_string()).collect()
 }
 
 /// What the grammar reads in the words of a statement of somebody's doing, as lines of a form.
@@ -172,6 +194,17 @@ mod tests {
         assert_eq!(fates, ["background", "disputed", "background", "background"], "{:?}", reading.statements);
         assert_eq!(reading.by, ReadBy::Author);
         assert_eq!(reading.missing(), ["A visitor comes towards the robot and stops."]);
+    }
+
+    #[test]
+    fn an_errand_to_a_place_that_the_map_lacks_is_disputed() {
+        for (task, missing) in [("Bring paper to the printer room", 1), ("Bring paper to the kitchen", 0)] {
+            let asked = Request { task: task.to_owned(), ..request("A visitor comes towards the robot.") };
+            let mut reading = called_background(&asked);
+            reading.statements.retain(|statement| statement.at == TextKey::Task);
+            dispute(&asked, &office(), &mut reading);
+            assert_eq!(reading.missing().len(), missing, "{task}: {:?}", reading.statements);
+        }
     }
 
     #[test]

@@ -37,12 +37,14 @@ cancel() { patience "timeout 3 scancel $* 2>/dev/null; grep -qs 'CANCEL.* AT' 's
 ended() { hasten; [ -z "$(squeue --noheader --array --jobs "$1" 2>/dev/null)" ]; }
 
 state() { scontrol show job "$1" | sed -n 's/.*JobState=\([A-Z]*\).*Restarts.*/\1/p; s/.*JobState=\([A-Z]*\).*/\1/p' | head -n 1; }
+# Whether the program of a shard has printed its last line: what struck its job after that left nothing undone.
+said_all() { grep -qs '^next ' "socrates-${job}_$1.log"; }
 # One of those that are left is killed, as for its memory. One that was done before it was struck was not killed: another is.
 strike() {
   killed=$(running first "$told" "$lost" "${spared[@]}") || return 1
   cancel --signal=KILL "${job}_$killed"
   patience '[ -z "$(squeue --noheader --array --jobs "${job}_$killed" --states RUNNING,COMPLETING 2>/dev/null)" ]'
-  [ "$(state "${job}_$killed")" != COMPLETED ] || { spared+=("$killed"); return 1; }
+  [ "$(state "${job}_$killed")" != COMPLETED ] && ! said_all "$killed" || { spared+=("$killed"); return 1; }
 }
 
 # A misspelt option of the file is refused.

@@ -6,10 +6,11 @@
 //!                                          the grammar, where it knows the language ─► dispute
 //! ```
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use socrates_model::job::Stage;
 use socrates_model::reading::ReadHuman;
-use socrates_model::statement::{Became, Statement};
+use socrates_model::statement::{Background, Became, Statement};
 use socrates_model::{Fact, FactKind, Fault, FaultCode, Proposal, Reading, Where};
 use socrates_prompts::{Account, Claim, Question, Sentence, Share, sentences};
 
@@ -30,7 +31,8 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
             ),
         );
     }
-    let mut ids: BTreeSet<&str> = question.reading.facts.iter().map(|fact| fact.id.as_str()).collect();
+    let stated: BTreeSet<&str> = question.reading.facts.iter().map(|fact| fact.id.as_str()).collect();
+    let mut ids: BTreeSet<&str> = BTreeSet::new();
     for (id, share) in &account.0 {
         let Some(sentence) = all.iter().find(|sentence| sentence.id == *id) else {
             let known: Vec<&str> = all.iter().map(|sentence| sentence.id.as_str()).take(MOST).collect();
@@ -48,15 +50,63 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
                     ),
                 );
             }
-            if !ids.insert(&claim.fact) {
+            if stated.contains(claim.fact.as_str()) {
                 bad(
                     format!("reading.{id}"),
-                    format!("names the fact `{}`, which is taken; number facts through", claim.fact),
+                    format!(
+                        "has `{}`, which is a fact under `stated`: leave that out, and give your own facts ids from f{} on",
+                        claim.fact,
+                        stated.len() + 1
+                    ),
                 );
+            } else if !ids.insert(&claim.fact) {
+                let what = format!("has `{}`, which another fact has; give each fact its own id", claim.fact);
+                bad(format!("reading.{id}"), what);
             }
         }
     }
     faults
+}
+
+/// The account with every sentence in it once, quotes that stand there, and an id for each fact. A sentence that was left out is given as
+/// background: what it asks for only its reader can say.
+pub(crate) fn mended(account: &Account, question: &Question) -> Account {
+    let mut taken: BTreeSet<String> = question.reading.facts.iter().map(|fact| fact.id.clone()).collect();
+    let mut shares = BTreeMap::new();
+    for sentence in sentences(&question.request) {
+        let mut share = account.0.get(&sentence.id).cloned().unwrap_or(Share::Background(Background::Setting));
+        if let Share::Asked { claims, .. } = &mut share {
+            for claim in claims {
+                if !holds(&sentence.shown, &claim.quote) {
+                    claim.quote.clone_from(&sentence.shown);
+                }
+                if taken.contains(&claim.fact) {
+                    let free = |id: &String| !taken.contains(id);
+                    claim.fact = (1_u32..).map(|number| format!("f{number}")).find(free).unwrap_or_default();
+                }
+                taken.insert(claim.fact.clone());
+            }
+        }
+        shares.insert(sentence.id, share);
+    }
+    Account(shares)
+}
+
+/// The question of a proposal that is made again, for an author that reads the request itself: what is stated and what a person wished in
+/// words binds, and what the author read before is no more than its last answer, which is shown with its account.
+pub(crate) fn again(question: &Question) -> Option<Question> {
+    let account = Account::of(&question.reading, &question.request);
+    if question.stage != Stage::Proposal || !question.reading.by.is_author() || account.0.is_empty() {
+        return None;
+    }
+    let mut stated = socrates_offline::stated(&question.request, &question.location);
+    for fact in &question.reading.facts {
+        let own = matches!(fact.kind, FactKind::Asked { .. });
+        if !own && !stated.facts.iter().any(|other| other.id == fact.id) {
+            stated.facts.push(fact.clone());
+        }
+    }
+    Some(Question { reading: stated, account: Some(account.lines()), ..question.clone() })
 }
 
 /// Whether a quote stands in a sentence as it is, blanks apart.
@@ -183,6 +233,30 @@ mod tests {
     }
 
     #[tokio::test]
+    async fn a_proposal_that_is_made_again_comes_with_its_account_and_is_bound_by_nothing_of_it() {
+        let (first, _) = asked(ROUGH);
+        assert_eq!(again(&first), None);
+        let made = attempt(&Offline, &first).await.unwrap();
+        let crate::Written::Proposal(proposal) = &made.written else { panic!() };
+        let wish =
+            Fact { id: "w1".into(), quote: "slower".into(), kind: FactKind::RobotSays(socrates_model::Gesture::Wait) };
+        let mut reading = made.reading.unwrap();
+        reading.facts.push(wish.clone());
+        let refused = Some(serde_json::to_string(proposal).unwrap());
+        let feedback = vec![Fault::new(FaultCode::DNoTrig, "c2", "never")];
+        let asked = again(&Question { reading, refused, feedback, ..first.clone() }).unwrap();
+        let mut bound = first.reading.facts.clone();
+        bound.push(wish);
+        assert_eq!(asked.reading.facts, bound, "what a person wished stays");
+        let shown = asked.messages().into_iter().find(|message| message.role == socrates_prompts::Role::Assistant);
+        let shown: Value = serde_json::from_str(&shown.unwrap().text).unwrap();
+        assert_eq!(shown["reading"]["s1"], json!(["setting"]), "{shown}");
+        assert_eq!(shown["reading"].as_object().unwrap().len(), 4);
+        let same = attempt(&Says(shown.to_string()), &first).await.unwrap();
+        assert_eq!(same.written.remark(), made.written.remark(), "what is shown can be answered again");
+    }
+
+    #[tokio::test]
     async fn a_sentence_left_out_or_made_up_is_refused() {
         let (question, _) = asked(ROUGH);
         let told = refused(&question, |reading| drop(reading.as_object_mut().unwrap().remove("s1"))).await;
@@ -206,7 +280,7 @@ mod tests {
             reading["s2"].as_array_mut().unwrap().push(first);
         })
         .await;
-        assert!(told[0].contains("is taken"), "{told:?}");
+        assert!(told[0].contains("which another fact has"), "{told:?}");
     }
 
     #[tokio::test]

@@ -49,6 +49,13 @@ impl Written {
         }
     }
 
+    /// What an author says beside its proposal stays with it, for the person who looks.
+    fn note(&mut self, answer: &str) {
+        if let (Self::Proposal(proposal), Some(words)) = (self, json::words_around(answer)) {
+            proposal.notes.push(format!("beside its answer the author says: {words}"));
+        }
+    }
+
     fn sign(&mut self, author: &str) {
         let place = match self {
             Self::Proposal(proposal) => &mut proposal.author,
@@ -184,6 +191,7 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
     match written {
         Some(mut written) if hard(&faults).is_empty() => {
             written.sign(&model);
+            written.note(&exchange.answer);
             if exchange.answer.contains('<') {
                 written.rewrite();
             }
@@ -323,6 +331,17 @@ mod tests {
         assert_eq!(paths.author, "scripted".into());
         assert_eq!(made.written.remark(), "5 nodes · 2 encounters");
         assert!(made.exchange.faults.is_empty() && made.exchange.repairs.is_empty());
+    }
+
+    #[tokio::test]
+    async fn what_an_author_says_against_the_request_is_kept_as_a_note() {
+        let asked = question(Stage::Proposal);
+        let answer = serde_json::to_string(&crate::testing::proposal()).unwrap();
+        let argues = format!("A corridor is the wrong place for this.\n{answer}");
+        let made = attempt(&Scripted::says(&argues), &asked).await.unwrap();
+        let Written::Proposal(proposal) = &made.written else { panic!("{made:?}") };
+        let note = proposal.notes.last().unwrap();
+        assert_eq!(note, "beside its answer the author says: A corridor is the wrong place for this.");
     }
 
     #[tokio::test]

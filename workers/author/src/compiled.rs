@@ -55,7 +55,7 @@ impl Author for Compiled {
 }
 
 /// The rules of the proposal as an answer to the behaviors question.
-fn answer(question: &Question, proposal: &Proposal) -> String {
+pub(crate) fn answer(question: &Question, proposal: &Proposal) -> String {
     let humans: serde_json::Map<String, serde_json::Value> = question
         .humans(proposal)
         .into_iter()

@@ -8,6 +8,7 @@ use socrates_model::job::Stage;
 use socrates_model::{FailureClass, Fault, Reading};
 use socrates_prompts::Question;
 
+use crate::account;
 use crate::attempt::{Exchange, Made, Refused, Written, attempt};
 use crate::settings::{Keys, author_of_job};
 
@@ -87,6 +88,8 @@ impl AuthorContext {
     /// # Errors
     /// [`JobRefusal`] with every reason at once.
     pub async fn answer(&self, question: &Question, asking: &Asking) -> Result<JobAnswer, JobRefusal> {
+        let again = account::again(question);
+        let question = again.as_ref().unwrap_or(question);
         // What only a person can settle is not put to an author.
         let unsettled: Vec<Fault> = hard(&question.reading.problems)
             .into_iter()

@@ -14,6 +14,7 @@ pub mod author;
 pub mod offline;
 
 pub mod compiled;
+mod passing;
 pub mod paths_by;
 
 pub mod cassette;

@@ -6,9 +6,10 @@ use socrates_llm::{
 };
 use socrates_model::FaultCode;
 use socrates_model::job::Stage;
-use socrates_prompts::{Image, PathsForm, Picture, Prompt, Question, Role, Style};
+use socrates_prompts::{Image, Mode, PathsForm, Picture, Prompt, Question, Role, Style};
 
 use crate::author::{Answer, AskError, Author, How};
+use crate::passing;
 
 /// Most tokens of an answer. The largest answers, proposals of many humans, take about a third.
 pub const MAX_TOKENS: u32 = 16_000;
@@ -67,7 +68,8 @@ impl Llm {
 impl Author for Llm {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let (style, grammar, change) = self.fitted(question);
-        let prompt = question.prompt(&style);
+        let prompt =
+            if style.mode == Mode::Naive { question.prompt(&style) } else { passing::shown(question).prompt(&style) };
         let room = room(question, self.max_tokens);
         let mut request = chat_request(question, &prompt, style.image, room)?;
         request.grammar = grammar;
@@ -133,10 +135,10 @@ pub fn chat_request(
     })
 }
 
-/// The map with its graph, no larger than asked for.
+/// The part of the map with its graph, no larger than asked for.
 fn picture(question: &Question, image: Image) -> Result<Vec<u8>, AskError> {
     let undrawn = |why: String| AskError::new(FaultCode::JRequest, format!("the map cannot be drawn: {why}"));
-    let svg = socrates_draw::annotated_map(&question.location);
+    let svg = socrates_draw::annotated_graph(&question.location);
     let (width, height) = svg_size(&svg).ok_or_else(|| undrawn("it has no size".to_owned()))?;
     #[expect(clippy::cast_possible_truncation, reason = "a scale needs no more digits")]
     let scale = (f64::from(image.side_px()) / width.max(height)).min(2.0) as f32;

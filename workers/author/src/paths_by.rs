@@ -77,7 +77,7 @@ impl Author for BySolver {
 }
 
 /// The paths of a proposal as text; where there are none, the reason under `cannot`, which is E-CANNOT.
-fn answer(question: &Question, proposal: &Proposal) -> String {
+pub(crate) fn answer(question: &Question, proposal: &Proposal) -> String {
     let former = question.refused.as_deref().and_then(|text| serde_json::from_str::<Paths>(text).ok());
     // What the task says in words is the model's to read: it stands in the proposal as classes of places.
     let problem = Problem {

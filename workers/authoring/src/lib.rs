@@ -39,6 +39,8 @@ async fn serve(context: &AuthorContext, stage: Stage, job: &Job) -> Result<Done,
         only: Vec::new(),
         feedback: spec.feedback.clone(),
         refused: job.refused().map(str::to_owned),
+        account: None,
+        passing: None,
         seed: spec.seed,
     };
     let asking = Asking { settings: spec.settings.clone(), attempt: job.grant().attempt };

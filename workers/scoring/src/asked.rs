@@ -294,6 +294,12 @@ fn how_long_the_robot_stands_because_it_is_asked_to_is_not_late() {
     // Nobody has it wait in its script, or nobody asks: then it is late.
     let report = timed(&[]).judge(&recording(&[robot(), asks()], 24.0, 0.01));
     assert_eq!(found(&report, "c1").standing, Standing::Late, "{}", found(&report, "c1").evidence);
+    let repair = report.repair.unwrap();
+    let told = repair.faults[0].to_string();
+    assert!(
+        repair.stage == socrates_model::job::Stage::Paths && told.contains("came true late"),
+        "what is late is tried again: {told}"
+    );
     let silent = Walk::human_through(1, &[(0., 8., 0.5), (20., -8., 0.5)]);
     let report = timed(&[4.0]).judge(&recording(&[robot(), silent], 24.0, 0.01));
     assert_eq!(found(&report, "c1").standing, Standing::Late, "{}", found(&report, "c1").evidence);

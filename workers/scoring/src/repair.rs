@@ -10,7 +10,7 @@ use crate::fidelity::{Finding, Judged, Missed};
 use crate::score::is_meeting;
 use crate::tracks::TrackFault;
 
-/// The repair a verdict asks for, if it is the scenario's fault. Only the run with the reference
+/// The repair a verdict asks for, if it is the scenario's fault; what came late could come in time. Only the run with the reference
 /// robot can tell; what another planner prevented is its own result, and so is what somebody did whom a driver outside moved.
 pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> Option<Repair> {
     let header = &evidence.recording.header;
@@ -19,8 +19,8 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
     }
     let mut faults: Vec<(Stage, Fault)> = Vec::new();
     match verdict {
-        Verdict::Realised | Verdict::RealisedLate | Verdict::RobotPrevented => return None,
-        Verdict::NotTriggered | Verdict::Contradicted => {}
+        Verdict::Realised | Verdict::RobotPrevented => return None,
+        Verdict::NotTriggered | Verdict::Contradicted | Verdict::RealisedLate => {}
         Verdict::Invalid => {
             for flaw in &judged.flaws {
                 let code = if flaw.stuck { FaultCode::DStuck } else { FaultCode::DPen };
@@ -37,7 +37,7 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
     }
     if faults.is_empty() {
         for (clause, finding) in judged.deciding() {
-            if matches!(finding.standing, Standing::NotTriggered | Standing::Fails) {
+            if matches!(finding.standing, Standing::NotTriggered | Standing::Fails | Standing::Late) {
                 faults.push(fault_of(clause, finding, has_rule(evidence, clause)));
             }
         }
@@ -93,7 +93,11 @@ fn fault_of(clause: &Clause, finding: &Finding, ruled: bool) -> (Stage, Fault) {
         .map_or_else(|| by_predicate(clause, finding, ruled), |stage| (FaultCode::DNoTrig, stage));
     let at = clause.predicate.human().map_or_else(|| Where::key(&clause.id), Where::agent);
     let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
-    let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
+    let state = match finding.standing {
+        Standing::NotTriggered => "never came true",
+        Standing::Late => "came true late",
+        Standing::Holds | Standing::Fails | Standing::NotApplicable => "was seen to be otherwise",
+    };
     let message = format!(
         "clause {} (\"{}\") {state}{when}, margin {:.2}: {}",
         clause.id, clause.text, finding.margin, finding.evidence

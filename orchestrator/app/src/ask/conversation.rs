@@ -328,7 +328,7 @@ impl Conversation<'_> {
             Command::Undo => self.undo(),
             Command::Back => self.back(),
             Command::Edit(what) => self.by_hand(what),
-            Command::Words(words) => self.in_words(words),
+            Command::Words(words) => return self.in_words(words),
             Command::Take(number) => self.take(*number),
             Command::Again(stage, why) => return self.again(*stage, why),
             Command::Accept => return self.accept(),
@@ -384,7 +384,8 @@ impl Conversation<'_> {
         self.faults();
     }
 
-    fn in_words(&mut self, words: &str) {
+    /// A wish in words: done by the grammar, or handed to the author that can read what the grammar cannot.
+    fn in_words(&mut self, words: &str) -> Next {
         let now = self.now();
         let question = Question { reading: now.reading.clone(), ..self.look.question.clone() };
         let whole = self.look.about == About::Draft;
@@ -404,14 +405,17 @@ impl Conversation<'_> {
             self.named(Tone::Bad, "not done", &fault.message.to_string());
         }
         if edited.done.is_empty() && edited.draft == draft {
-            if self.look.author != AuthorSpec::Offline {
-                let hint = format!("`again {words}` hands these words to {}", self.look.author);
-                self.say(Tone::Quiet, &hint);
+            // One word is a slip of a command rather than a wish.
+            if self.look.author == AuthorSpec::Offline || words.split_whitespace().nth(1).is_none() {
+                return Next::Ask;
             }
-            return;
+            let told = format!("{} is asked: \"{words}\"", self.look.author);
+            self.say(Tone::Quiet, &told);
+            return self.again(None, words);
         }
         let Draft { proposal, paths, behaviors } = edited.draft;
         self.changed(&format!("\"{words}\""), Version { proposal, paths, behaviors, reading: edited.reading });
+        Next::Ask
     }
 
     fn again(&mut self, stage: Option<Stage>, why: &str) -> Next {

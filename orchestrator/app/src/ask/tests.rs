@@ -180,6 +180,19 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
 }
 
 #[test]
+fn words_that_the_grammar_does_not_read_go_to_a_model() {
+    let look = Look { author: "openai:m".parse().unwrap(), ..look(About::Proposal) };
+    let mut person = Script::of(&["acept", "paint the walls green", "accept"]);
+    let (decision, _) = talk(&look, &mut person);
+    let decision = decision.unwrap();
+    assert_eq!(decision.left, look.came);
+    let wishes: Vec<String> =
+        decision.anew.iter().flat_map(|repair| &repair.faults).map(|fault| fault.message.to_string()).collect();
+    assert_eq!(wishes, ["paint the walls green"], "{}", person.text());
+    assert!(person.heard("openai:m is asked: \"paint the walls green\""), "{}", person.text());
+}
+
+#[test]
 fn one_stage_is_made_again_and_the_others_are_kept() {
     let look = look(About::Draft);
     let (decision, _) = talk(&look, &mut Script::of(&["again paths from the other side"]));

@@ -13,13 +13,16 @@ mod report;
 mod spec;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::json;
 use socrates_model::{AuthorSpec, Digest};
 
+use crate::bundler::Bundler;
 use crate::config::Config;
 use crate::exit::Complaint;
 use crate::files;
+use crate::keep::Keep;
 use crate::output::Printer;
 use crate::prepare::{Prepared, prepare_text, scenario_id};
 use crate::run_options::RunOptions;
@@ -33,19 +36,23 @@ use spec::{Arm, Case, Spec};
 #[derive(Debug, Clone)]
 pub struct AuthorOptions {
     /// Specification: a TOML file, or one that comes with the program: `paper`, `feedback` (what being told the faults is
-    /// worth), `faults` (which check finds which injected fault).
+    /// worth), `faults` (which check finds which injected fault), `arms` (every way of asking one author).
     pub spec: PathBuf,
     /// Folder for `results.csv` and `report.md`, `confusion.csv` and `confusion.md`.
     pub out: PathBuf,
     /// Only the first so many scenarios of every location and kind, for a quick look.
     pub limit: Option<usize>,
+    /// Author of every arm of a grid; the one of the specification by default.
+    pub author: Option<AuthorSpec>,
+    /// Whether the bundles of arm N stay, in `arm-N`, for `labels page`.
+    pub bundles: bool,
     /// Worker processes of the simulation stage.
     pub workers: Option<u32>,
 }
 
 /// Evaluates.
 pub async fn evaluate(talk: &Printer, config: &Config, options: &AuthorOptions) -> Result<(), Complaint> {
-    let spec = Spec::load(&options.spec)?;
+    let spec = Spec::load(&options.spec)?.with_grid(options.author.as_ref())?;
     let cases = limited(spec.cases(), options.limit);
     talk.line(&format!(
         "evaluation {}: {} an arm, {}",
@@ -68,7 +75,8 @@ pub async fn evaluate(talk: &Printer, config: &Config, options: &AuthorOptions) 
     let mut done: Vec<report::Done<'_>> = Vec::new();
     for (number, arm) in (1..).zip(&spec.arms) {
         let work = options.out.join(".socrates").join(format!("arm-{number}"));
-        let outcomes = maker.run(arm, &cases, &work).await?;
+        let bundles = options.bundles.then(|| options.out.join(format!("arm-{number}")));
+        let outcomes = maker.run(arm, &cases, &work, bundles.as_deref()).await?;
         let realised = outcomes.iter().filter(|outcome| outcome.realised).count();
         talk.line(&format!("arm        {:<26} {realised} of {} realised", arm.name, outcomes.len()));
         done.push((arm, outcomes));
@@ -86,7 +94,7 @@ pub async fn evaluate(talk: &Printer, config: &Config, options: &AuthorOptions) 
         json!({
             "arm": arm.name, "scenarios": outcomes.len(), "first_pass": count(|o| o.first_pass),
             "after_repair": count(|o| o.after_repair), "after_asking": count(|o| o.after_asking),
-            "first_run": count(|o| o.first_run), "realised": count(|o| o.realised),
+            "first_run": count(|o| o.first_run), "unaided": count(Outcome::unaided), "realised": count(|o| o.realised),
         })
     });
     talk.result(&json!({ "out": options.out.display().to_string(), "arms": arms.collect::<Vec<_>>() }));
@@ -126,13 +134,22 @@ struct Maker<'a> {
 
 impl Maker<'_> {
     /// Makes every scenario the way of one arm, in one batch of the whole pipeline.
-    async fn run(&self, arm: &Arm, cases: &[Case], work: &Path) -> Result<Vec<Outcome>, Complaint> {
+    async fn run(
+        &self,
+        arm: &Arm,
+        cases: &[Case],
+        work: &Path,
+        bundles: Option<&Path>,
+    ) -> Result<Vec<Outcome>, Complaint> {
         std::fs::create_dir_all(work).map_err(|why| {
             Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
         })?;
         let own = flags_of(arm);
         let config = self.config.clone().with(&own)?;
-        let prepared = cases.iter().map(|case| self.prepare(arm, case, &config)).collect::<Result<Vec<_>, _>>()?;
+        let prepared = cases
+            .iter()
+            .map(|case| self.prepare(arm, case, &config).map(Arc::new))
+            .collect::<Result<Vec<Arc<Prepared>>, _>>()?;
         let wanted = (0_u32..)
             .zip(cases.iter().zip(&prepared))
             .map(|(index, (case, prepared))| {
@@ -142,7 +159,14 @@ impl Maker<'_> {
             .collect::<Result<Vec<_>, Complaint>>()?;
         let options = RunOptions { workers: self.options.workers, ..RunOptions::plain(self.spec.seed) };
         let making = Making { talk: self.talk, config: &config, options: &options, work, wanted: &wanted };
-        let made = making.all(wanted.len()).await?;
+        let mut bundler = bundles.map(|root| Bundler::start(root, work, Keep::Folders, &wanted, &prepared));
+        let made = making.all(wanted.len(), bundler.as_mut()).await?;
+        if let Some(bundler) = bundler {
+            // What could not be made has no bundle; one that could not be written is told.
+            for bundled in bundler.finish(self.talk).await?.into_values() {
+                bundled?;
+            }
+        }
         let fetch = |digest: &Digest| made.fetch(digest).ok();
         Ok(made.statuses.iter().map(|status| Outcome::of(status, made.history.of(&status.id), &fetch)).collect())
     }

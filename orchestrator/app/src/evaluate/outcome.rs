@@ -32,6 +32,8 @@ pub(super) struct Outcome {
     pub(super) realised: bool,
     /// Questions that were asked.
     pub(super) asks: usize,
+    /// Paths that the solver wrote in the author's place.
+    pub(super) by_solver: usize,
     /// Times that it went back after a run.
     pub(super) sent_back: usize,
     /// Tokens in and out.
@@ -51,6 +53,8 @@ pub(super) struct Outcome {
 /// What an exchange tells beside its words.
 #[derive(Debug, Default, Deserialize)]
 struct Told {
+    #[serde(default)]
+    model: String,
     #[serde(default)]
     repairs: Vec<Fault>,
     #[serde(default)]
@@ -100,6 +104,7 @@ impl Outcome {
             self.author_ms += attempt.wall_ms;
             let kept = if attempt.end == Some(AttemptEnd::Succeeded) { &job.artifacts } else { &attempt.artifacts };
             let told = exchange(kept, fetch).unwrap_or_default();
+            self.by_solver += usize::from(told.model == socrates_author::paths_by::NAME);
             let found: Vec<&str> = told.faults.iter().chain(&told.repairs).map(|fault| fault.code.code()).collect();
             for code in &told.injected {
                 let entry = self.injected.entry((stage, code.clone())).or_default();
@@ -118,8 +123,13 @@ impl Outcome {
         }
     }
 
+    /// Realised with its first answers, about which nothing was told.
+    pub(super) const fn unaided(&self) -> bool {
+        self.after_repair && self.first_run
+    }
+
     /// Names of the columns of [`Outcome::line`], those of the case first.
-    pub(super) const COLUMNS: &'static str = "arm,request,guided,location,repeat,seed,result,first_pass,after_repair,after_asking,first_run,realised,asks,sent_back,tokens_in,tokens_out,author_ms,injected,found";
+    pub(super) const COLUMNS: &'static str = "arm,request,guided,location,repeat,seed,result,first_pass,after_repair,after_asking,first_run,unaided,realised,asks,by_solver,sent_back,tokens_in,tokens_out,author_ms,injected,found";
 
     /// A line of the table.
     pub(super) fn line(&self, arm: &str, case: &Case) -> String {
@@ -140,8 +150,10 @@ impl Outcome {
             bit(self.after_repair),
             bit(self.after_asking),
             bit(self.first_run),
+            bit(self.unaided()),
             bit(self.realised),
             self.asks.to_string(),
+            self.by_solver.to_string(),
             self.sent_back.to_string(),
             self.tokens.0.to_string(),
             self.tokens.1.to_string(),

@@ -13,11 +13,12 @@ const BAR: usize = 20;
 /// Whether a scenario counts.
 type Is = fn(&Outcome) -> bool;
 /// What is counted as a success, step by step.
-const STEPS: [(&str, Is); 5] = [
+const STEPS: [(&str, Is); 6] = [
     ("first answer right", |outcome| outcome.first_pass),
     ("after safe repair", |outcome| outcome.after_repair),
     ("after asking again", |outcome| outcome.after_asking),
     ("first run as asked", |outcome| outcome.first_run),
+    ("realised without any feedback", Outcome::unaided),
     ("realised in the end", |outcome| outcome.realised),
 ];
 
@@ -129,7 +130,7 @@ fn pairs(cases: &[Case], arms: &[Done<'_>]) -> String {
 
 fn costs(arms: &[Done<'_>]) -> String {
     let mut out = String::from(
-        "\n## What it takes\n\n| arm | questions a scenario | sent back after a run | tokens per realised scenario (in / out) | author's time per realised scenario |\n|---|---|---|---|---|\n",
+        "\n## What it takes\n\n| arm | questions a scenario | paths by the solver | sent back after a run | tokens per realised scenario (in / out) | author's time per realised scenario |\n|---|---|---|---|---|---|\n",
     );
     for (arm, outcomes) in arms {
         let realised = outcomes.iter().filter(|outcome| outcome.realised).count();
@@ -143,9 +144,10 @@ fn costs(arms: &[Done<'_>]) -> String {
         line(
             &mut out,
             &format!(
-                "| {} | {:.2} | {} | {} / {} | {} ms |",
+                "| {} | {:.2} | {} | {} | {} / {} | {} ms |",
                 arm.name,
                 per(asks, outcomes.len()),
+                sum(&|outcome| outcome.by_solver as u64),
                 sum(&|outcome| outcome.sent_back as u64),
                 each(sum(&|outcome| outcome.tokens.0)),
                 each(sum(&|outcome| outcome.tokens.1)),

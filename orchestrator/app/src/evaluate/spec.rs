@@ -18,6 +18,7 @@ const DOOR: Door = Door {
         ("paper", include_str!("../../../../prompts/protocols/paper.toml")),
         ("feedback", include_str!("../../../../prompts/protocols/feedback.toml")),
         ("faults", include_str!("../../../../prompts/protocols/faults.toml")),
+        ("arms", include_str!("../../../../prompts/protocols/arms.toml")),
     ],
 };
 
@@ -45,6 +46,8 @@ pub(super) struct Spec {
     /// Ways of authoring that are compared; the first is what the others are compared with.
     #[serde(default)]
     pub(super) arms: Vec<Arm>,
+    /// Arms made by combining values.
+    grid: Option<Grid>,
     /// Named rates of faults, as `--inject` takes them.
     #[serde(default)]
     pub(super) rates: BTreeMap<String, BTreeMap<String, f64>>,
@@ -104,6 +107,59 @@ pub(super) struct Arm {
     pub(super) faults_unguided: Option<String>,
 }
 
+/// Arms that differ in configuration values, every combination of them.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Grid {
+    /// What they are, in a sentence.
+    #[serde(default)]
+    about: String,
+    /// As `--author` takes it, which takes its place. Default: the offline author.
+    #[serde(default)]
+    author: AuthorSpec,
+    /// Values of each configuration key.
+    axes: BTreeMap<String, Vec<toml::Value>>,
+}
+
+/// Arms of a grid at most.
+const MOST_ARMS: usize = 64;
+
+impl Grid {
+    /// How many combinations there are; none where an axis is empty.
+    fn count(&self) -> usize {
+        self.axes.values().map(Vec::len).fold(1, usize::saturating_mul)
+    }
+
+    fn arms(&self, author: Option<&AuthorSpec>) -> Vec<Arm> {
+        let mut sets: Vec<BTreeMap<String, toml::Value>> = vec![BTreeMap::new()];
+        for (key, values) in &self.axes {
+            let with = |set: &BTreeMap<String, toml::Value>, value: &toml::Value| {
+                set.iter()
+                    .map(|(key, value)| (key.clone(), value.clone()))
+                    .chain([(key.clone(), value.clone())])
+                    .collect()
+            };
+            sets = sets.iter().flat_map(|set| values.iter().map(move |value| with(set, value))).collect();
+        }
+        let name = |set: &BTreeMap<String, toml::Value>| {
+            let words = set.iter().map(|(key, value)| {
+                let value = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                format!("{} {value}", key.rsplit('.').next().unwrap_or(key))
+            });
+            words.collect::<Vec<_>>().join(", ")
+        };
+        let author = author.unwrap_or(&self.author);
+        let arm = |set: BTreeMap<String, toml::Value>| Arm {
+            name: name(&set),
+            about: self.about.clone(),
+            author: author.clone(),
+            set,
+            ..Arm::default()
+        };
+        sets.into_iter().map(arm).collect()
+    }
+}
+
 const fn one() -> u64 {
     1
 }
@@ -147,6 +203,25 @@ impl Spec {
         if problems.is_empty() { Ok(spec) } else { Err(DOOR.refused(what, problems)) }
     }
 
+    /// The specification with the arms of its grid behind its own, asked of this author where one is given.
+    ///
+    /// # Errors
+    /// A complaint where an author is given and there is no grid that could take it.
+    pub(super) fn with_grid(mut self, author: Option<&AuthorSpec>) -> Result<Self, Complaint> {
+        match self.grid.take() {
+            Some(grid) => self.arms.extend(grid.arms(author)),
+            None => {
+                if let Some(author) = author {
+                    return Err(Complaint::input(
+                        format!("`--author {author}` is for a specification with a `[grid]`, and this has none"),
+                        "the arms of this one name their own authors; `evaluate author arms --author …` takes one",
+                    ));
+                }
+            }
+        }
+        Ok(self)
+    }
+
     /// Takes over what it does not have itself.
     fn take(&mut self, other: Self) {
         if self.guided.is_empty() && self.unguided.is_none() {
@@ -159,7 +234,11 @@ impl Spec {
 
     fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
-        for (what, count) in [("locations", self.locations.len()), ("arms", self.arms.len())] {
+        let combined = self.grid.as_ref().map_or(0, Grid::count);
+        if self.grid.is_some() && !(1..=MOST_ARMS).contains(&combined) {
+            problems.push(format!("the axes of `[grid]` make {combined} arms; allowed: 1 to {MOST_ARMS}"));
+        }
+        for (what, count) in [("locations", self.locations.len()), ("arms", self.arms.len() + combined)] {
             // A table of faults is made without any arm.
             if count == 0 && !(what == "arms" && self.confusion) {
                 problems.push(format!("`{what}` is empty; at least one is needed"));
@@ -278,6 +357,21 @@ mod tests {
             .collect();
         assert_eq!(told, ["\"named\"", "\"vague\"", "\"none\""]);
         assert!(Spec::load(Path::new("faults")).unwrap().confusion);
+    }
+
+    #[test]
+    fn a_grid_is_every_combination_asked_of_one_author() {
+        let author: AuthorSpec = "openai:gpt-4o".parse().unwrap();
+        let spec = Spec::load(Path::new("arms")).unwrap().with_grid(Some(&author)).unwrap();
+        let names: BTreeSet<&str> = spec.arms.iter().map(|arm| arm.name.as_str()).collect();
+        assert_eq!((spec.arms.len(), names.len()), (16, 16));
+        assert!(names.contains("behaviors rules, feedback named, paths_by solver, reading model"), "{names:?}");
+        assert!(spec.arms.iter().all(|arm| arm.author == author && arm.set.len() == 4));
+        let none = Spec::load(Path::new("paper")).unwrap().with_grid(Some(&author)).unwrap_err();
+        assert!(none.hint.contains("arms"), "{none:?}");
+        let text = "title = \"x\"\nlike = \"paper\"\nlocations = [\"office\"]\n[grid]\naxes = { a = [] }\n";
+        let empty: Spec = toml::from_str(text).unwrap();
+        assert!(empty.problems().join("\n").contains("make 0 arms; allowed: 1 to 64"));
     }
 
     #[test]

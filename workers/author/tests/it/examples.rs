@@ -14,7 +14,7 @@ fn styles() -> Vec<Style> {
 async fn every_example_of_every_stage_and_form_passes_the_checks_without_a_warning() {
     for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
         for (style, by) in styles().into_iter().flat_map(|style| [(style, ReadBy::Grammar), (style, ReadBy::Author)]) {
-            let shown = examples::worked(stage, &style, by);
+            let shown = examples::worked(stage, &style, by, by == ReadBy::Grammar);
             assert_eq!(shown.len(), 2);
             for (question, answer) in shown {
                 // The form that servers are told to enforce takes it as well.
@@ -31,12 +31,12 @@ async fn an_example_means_the_same_in_every_form() {
     let mut paths = Vec::new();
     let mut actions = Vec::new();
     for style in styles() {
-        let (question, answer) = examples::worked(Stage::Paths, &style, ReadBy::Grammar).remove(0);
+        let (question, answer) = examples::worked(Stage::Paths, &style, ReadBy::Grammar, true).remove(0);
         let Written::Paths(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
             panic!()
         };
         paths.push((read.robot, read.humans, read.encounters));
-        let (question, answer) = examples::worked(Stage::Behaviors, &style, ReadBy::Grammar).remove(0);
+        let (question, answer) = examples::worked(Stage::Behaviors, &style, ReadBy::Grammar, true).remove(0);
         let Written::Behaviors(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
             panic!()
         };
@@ -51,7 +51,7 @@ async fn an_example_means_the_same_in_every_form() {
 #[tokio::test]
 async fn what_is_shown_as_refused_is_refused_for_the_reason_that_is_given() {
     for (stage, shown) in [(Stage::Proposal, examples::REFUSED_PROPOSAL), (Stage::Paths, examples::REFUSED_PATHS)] {
-        let (question, mut answer) = examples::worked(stage, &Style::default(), ReadBy::Author).remove(0);
+        let (question, mut answer) = examples::worked(stage, &Style::default(), ReadBy::Author, true).remove(0);
         let (part, told) = shown.trim_start_matches('`').split_once("`: ").unwrap();
         let part: serde_json::Value = serde_json::from_str(&format!("{{{part}}}")).unwrap();
         let (name, value) = part.as_object().unwrap().iter().next().unwrap();
