@@ -183,3 +183,18 @@ fn a_run_in_which_robot_and_human_never_meet_is_not_realised() {
     assert_ne!(json["verdict"], "realised");
     assert_eq!(finished.code, 3, "{}\n{}", finished.err, finished.out);
 }
+
+#[test]
+fn what_is_pinned_whole_is_played_without_the_author_that_wrote_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, json) = make(folder.path(), "whole", WAREHOUSE, &[]);
+    assert_eq!(json["verdict"], "realised", "{}", first.err);
+    let pins =
+        ["proposal", "paths", "behaviors"].map(|part| format!("{part} = \"bundle-whole/details/{part}.json\"\n"));
+    // Nobody listens there.
+    let nobody = ["--author", "console:me", "--set", "author.console.url=http://127.0.0.1:9/v1"];
+    let (again, json) = make(folder.path(), "pinned", &format!("{}{WAREHOUSE}", pins.concat()), &nobody);
+    assert_eq!((again.code, &json["verdict"]), (0, &serde_json::json!("realised")), "{}\n{}", again.err, again.out);
+    let (asked, _) = make(folder.path(), "part", &format!("{}{WAREHOUSE}", pins[0]), &nobody);
+    assert_eq!(asked.code, 5, "the paths are still asked for: {}", asked.err);
+}

@@ -54,7 +54,7 @@ pub(crate) async fn batch(
         Place::New(root) => place::told(talk, &base, root),
     };
     let fixed = keep::agreed(&root, place::fixed(&root), options.keep)?;
-    crate::authors::check(config, prepared.iter().map(|one| &one.author)).await?;
+    crate::authors::check(config, prepared.iter().filter_map(Prepared::asked)).await?;
     let work = place::claim(&root, wish)?;
     for one in &prepared {
         talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));

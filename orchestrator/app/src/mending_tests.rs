@@ -10,7 +10,7 @@ use std::path::Path;
 
 use socrates_model::job::Stage;
 use socrates_model::rule::RobotDo;
-use socrates_model::{HumanId, Location, NodeId, Relation, Report, Rule, Run, RunId, Trigger, Verdict};
+use socrates_model::{Action, HumanId, Location, NodeId, Relation, Report, Rule, Run, RunId, Trigger, Verdict};
 
 use crate::config::Config;
 use crate::in_process::{Made, evidence, simulate};
@@ -52,13 +52,14 @@ rough_scenario = "A nurse comes towards the robot in the corridor and signals wa
 const HASTY: &str = "a reaction comes without its reason";
 
 /// What is spoiled, and by which stage's answer it is mended.
-const SPOILS: [(&str, Stage, Spoil); 8] = [
+const SPOILS: [(&str, Stage, Spoil); 9] = [
     ("the robot says nothing", Stage::Proposal, silent),
     ("nobody signs to anybody", Stage::Proposal, no_signs),
     ("a reaction comes only within 0.3 m", Stage::Behaviors, short_sighted),
     (HASTY, Stage::Behaviors, hasty),
     ("somebody walks the other way", Stage::Paths, turned),
     ("one of a group stands elsewhere", Stage::Paths, apart),
+    ("one of a group runs away from afar", Stage::Behaviors, leaves_group),
     ("somebody stands where the robot wants to end", Stage::Paths, in_the_way),
     ("somebody starts in the robot's place", Stage::Paths, on_top),
 ];
@@ -139,6 +140,17 @@ fn apart(made: &mut Made, location: &Location) -> Option<()> {
     for encounter in made.paths.encounters.iter_mut().filter(|encounter| encounter.human == last) {
         encounter.node = next.clone();
     }
+    Some(())
+}
+
+fn leaves_group(made: &mut Made, _: &Location) -> Option<()> {
+    let member = *made.proposal.groups.iter().find(|group| group.standing)?.members.first()?;
+    let mut rules = made.proposal.human(member)?.rules.clone();
+    let when = vec![Trigger::RobotNear(15.0)];
+    rules.insert(0, Rule { when, act: Action::RunAway, for_s: Some(6.0), latched: true, ..Rule::default() });
+    // The rules say so as well: a tree that does not what they say never comes to a run.
+    made.proposal.humans.iter_mut().find(|human| human.id == member)?.rules = rules.clone();
+    made.behaviors.humans.get_mut(&member)?.tree = socrates_bt::compile(member, &rules).ok()?;
     Some(())
 }
 

@@ -61,6 +61,12 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
+    /// The author that is asked; none where every answer is pinned.
+    pub(crate) fn asked(&self) -> Option<&AuthorSpec> {
+        let wanted = [Role::Proposal, Role::Paths, Role::Behaviors];
+        (!wanted.iter().all(|role| self.pins.contains_key(role))).then_some(&self.author)
+    }
+
     /// Whether a driver outside drives in any of its runs.
     pub(crate) fn is_driven(&self) -> bool {
         is_driven(&self.request)

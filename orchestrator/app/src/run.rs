@@ -265,7 +265,7 @@ async fn one(
         }
         Place::New(dir) => place::told(talk, &base, dir),
     };
-    crate::authors::check(config, [&prepared.author]).await?;
+    crate::authors::check(config, prepared.asked()).await?;
     let work = place::claim(&dir, wish)?;
     if options.view {
         *viewing = Some(Viewing::begin(talk, config, &dir).await?);

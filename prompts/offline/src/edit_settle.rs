@@ -2,7 +2,9 @@
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::rule::RobotDo;
-use socrates_model::{ClauseRole, FactKind, HumanId, HumanProposal, Predicate, Proposal, Reading};
+use socrates_model::{
+    Action, Clause, ClauseRole, Fact, FactKind, HumanId, HumanProposal, Predicate, Proposal, Reading,
+};
 
 use crate::edit::Desk;
 use crate::edit_people::{next_id, same_act};
@@ -50,17 +52,10 @@ pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) 
             clause.text = events::headcount(count);
         }
     }
-    // Clauses of those who changed are written anew; all others stay as they are.
     let changed: Vec<HumanProposal> =
         desk.changed.iter().filter_map(|who| proposal.humans.get(*who)).cloned().collect();
     for human in &changed {
-        proposal
-            .expected_events
-            .retain(|clause| clause.role != ClauseRole::Setup || clause.predicate.human() != Some(human.id));
-        for mut clause in events::of_human(human, proposal, reading) {
-            clause.id = next_id(proposal);
-            proposal.expected_events.push(clause);
-        }
+        clauses_of(human, before, proposal, reading);
     }
     let says: Vec<_> = proposal
         .robot
@@ -80,6 +75,111 @@ pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) 
     proposal.expected_events.retain(|clause| {
         !matches!(&clause.predicate, Predicate::Order { first, then } if !ids.contains(first) || !ids.contains(then))
     });
+    // What its author saw in clauses of which none is left was asked for before the edit.
+    let served = |proposal: &Proposal, id: &str| proposal.expected_events.iter().any(|clause| clause.source == id);
+    reading.facts.retain(|fact| {
+        !matches!(fact.kind, FactKind::Asked { .. }) || served(proposal, &fact.id) || !served(before, &fact.id)
+    });
+}
+
+/// Clauses of a human who changed are written anew. Those that show what an author read of the request itself stay, as long as the human still
+/// does it: no grammar could write them again.
+fn clauses_of(human: &HumanProposal, before: &Proposal, proposal: &mut Proposal, reading: &Reading) {
+    let asked = |clause: &Clause| {
+        let of_author = |fact: &Fact| fact.id == clause.source && matches!(fact.kind, FactKind::Asked { .. });
+        reading.facts.iter().any(of_author)
+    };
+    proposal.expected_events.retain(|clause| {
+        clause.role != ClauseRole::Setup
+            || clause.predicate.human() != Some(human.id)
+            || asked(clause) && still_does(&clause.predicate, human, before)
+    });
+    for mut clause in events::of_human(human, proposal, reading) {
+        if proposal.expected_events.iter().any(|other| says_the_same(&other.predicate, &clause.predicate)) {
+            continue;
+        }
+        clause.id = next_id(proposal);
+        proposal.expected_events.push(clause);
+    }
+}
+
+/// Whether a human does after an edit what a clause tests: has a rule for it, or goes the same way as before.
+fn still_does(predicate: &Predicate, human: &HumanProposal, before: &Proposal) -> bool {
+    let acts = |test: fn(&Action) -> bool| human.rules.iter().any(|rule| test(&rule.act));
+    match predicate {
+        Predicate::Reacts { act, .. } => human.rules.iter().any(|rule| same_act(&rule.act, act)),
+        Predicate::Step { rule, .. } => human.rules.contains(rule),
+        Predicate::Gestures { gesture, .. } | Predicate::GesturesTo { gesture, .. } => {
+            human.rules.iter().any(|rule| rule.gesture == Some(*gesture))
+        }
+        Predicate::Looks { .. } => acts(|act| matches!(act, Action::LookAtRobot | Action::LookAt(_))),
+        Predicate::Blocks { .. } => acts(|act| *act == Action::Block),
+        Predicate::RunsAway { .. } => acts(|act| *act == Action::RunAway),
+        Predicate::GivesWay { .. } => acts(|act| *act == Action::GiveWay),
+        Predicate::MakesRoom { .. } => acts(|act| *act == Action::MakeRoom),
+        Predicate::StandsStill { .. } => {
+            human.relation.stands() || acts(|act| matches!(act, Action::StandStill | Action::LookAtRobot))
+        }
+        Predicate::ChangesPace { .. } | Predicate::TurnsBack { .. } => false,
+        Predicate::Humans { .. }
+        | Predicate::Meets { .. }
+        | Predicate::MeetsAgain { .. }
+        | Predicate::HeadOn { .. }
+        | Predicate::Crosses { .. }
+        | Predicate::OnSide { .. }
+        | Predicate::Faces { .. }
+        | Predicate::Ahead { .. }
+        | Predicate::Overtakes { .. }
+        | Predicate::RobotPasses { .. }
+        | Predicate::Follows { .. }
+        | Predicate::Abreast { .. }
+        | Predicate::Parallel { .. }
+        | Predicate::Flow { .. }
+        | Predicate::Density { .. }
+        | Predicate::Surrounds { .. }
+        | Predicate::Converges { .. }
+        | Predicate::RobotStep { .. }
+        | Predicate::GoesTo { .. }
+        | Predicate::StaysAside { .. }
+        | Predicate::Walks { .. }
+        | Predicate::GetsTo { .. }
+        | Predicate::Leaves { .. }
+        | Predicate::StaysInside { .. }
+        | Predicate::Enters { .. }
+        | Predicate::DoorOpens { .. }
+        | Predicate::HiddenUntil { .. }
+        | Predicate::Formation { .. }
+        | Predicate::WalksTogether { .. }
+        | Predicate::Queues { .. }
+        | Predicate::Order { .. }
+        | Predicate::Before { .. }
+        | Predicate::EncounterAt { .. }
+        | Predicate::Reaches { .. }
+        | Predicate::StartsAt { .. }
+        | Predicate::RobotWay { .. }
+        | Predicate::OnTime { .. }
+        | Predicate::Plausible
+        | Predicate::RobotArrives
+        | Predicate::RobotKeeps { .. }
+        | Predicate::RobotEntersLast
+        | Predicate::RobotLeavesFirst
+        | Predicate::RobotJoins { .. }
+        | Predicate::RobotLeavesGroup { .. }
+        | Predicate::RobotObeys { .. } => before.human(human.id).is_some_and(|was| was.relation == human.relation),
+    }
+}
+
+/// Whether two tests are of one kind about one human; of reactions and signs there may be several.
+fn says_the_same(one: &Predicate, other: &Predicate) -> bool {
+    let several = matches!(
+        one,
+        Predicate::Reacts { .. } | Predicate::Step { .. } | Predicate::Gestures { .. } | Predicate::GesturesTo { .. }
+    );
+    one == other
+        || !several
+            && one.human().is_some()
+            && one.human() == other.human()
+            && std::mem::discriminant(one) == std::mem::discriminant(other)
 }
 
 /// The facts that still hold; those that the edit overrules say what it says.

@@ -257,6 +257,25 @@ mod tests {
     }
 
     #[tokio::test]
+    async fn an_edit_in_words_keeps_the_clauses_of_what_an_author_read() {
+        let (question, location) = asked(ROUGH);
+        let made = attempt(&Offline, &question).await.unwrap();
+        let (crate::Written::Proposal(proposal), Some(reading)) = (made.written, made.reading) else { panic!() };
+        let draft = socrates_offline::Draft { proposal, paths: None, behaviors: None };
+        let asked = Question { reading, ..question };
+        for words in [
+            "human_1 should wave at the robot",
+            "human_1 walks at 0.8 m/s",
+            "human_1 gives way when the robot is within 2 m",
+        ] {
+            let edited = socrates_offline::edit(&asked, &draft, words);
+            assert!(!edited.done.is_empty(), "{words}: {:?}", edited.not_done);
+            let faults = socrates_checks::check_proposal(&edited.draft.proposal, &edited.reading, &location);
+            assert_eq!(socrates_model::fault::hard(&faults), [], "{words}");
+        }
+    }
+
+    #[tokio::test]
     async fn a_sentence_left_out_or_made_up_is_refused() {
         let (question, _) = asked(ROUGH);
         let told = refused(&question, |reading| drop(reading.as_object_mut().unwrap().remove("s1"))).await;

@@ -3,7 +3,9 @@
 use socrates_model::job::Stage;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::{Repair, Standing};
-use socrates_model::{Action, AgentId, Clause, Fault, FaultCode, Predicate, Trigger, Verdict, Where};
+use socrates_model::{
+    Action, AgentId, Clause, EventKind, Fault, FaultCode, HumanId, Predicate, Trigger, Verdict, Where,
+};
 
 use crate::evidence::Evidence;
 use crate::fidelity::{Finding, Judged, Missed};
@@ -38,13 +40,24 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
     if faults.is_empty() {
         for (clause, finding) in judged.deciding() {
             if matches!(finding.standing, Standing::NotTriggered | Standing::Fails | Standing::Late) {
-                faults.push(fault_of(clause, finding, has_rule(evidence, clause)));
+                let (stage, fault) = fault_of(clause, finding, has_rule(evidence, clause));
+                let left = finding.first_s().filter(|_| fault.code == FaultCode::DGroup);
+                faults.push(match left.and_then(|t| left_by_rule(evidence, clause, t)) {
+                    Some((human, act)) => {
+                        let why = format!("{}; {human} leaves it by their rule to {}", fault.message, act.phrase());
+                        (Stage::Behaviors, Fault { message: why.into(), ..fault })
+                    }
+                    None => (stage, fault),
+                });
             }
         }
     }
-    // Whoever acts before their reason is not where the others expect them: what else was missed may well be of that.
-    if faults.iter().any(|(_, fault)| fault.code == FaultCode::DEarly) {
-        faults.retain(|(_, fault)| fault.code == FaultCode::DEarly);
+    // Whoever acts before their reason, or leaves their group, is not where the others expect them: what else was missed may well be of that.
+    let hasty = |(stage, fault): &(Stage, Fault)| {
+        fault.code == FaultCode::DEarly || fault.code == FaultCode::DGroup && *stage == Stage::Behaviors
+    };
+    if faults.iter().any(hasty) {
+        faults.retain(hasty);
     }
     // One stage is done again at a time, the earliest: what depends on it is made anew anyway.
     let stage = faults.iter().map(|(stage, _)| *stage).min()?;
@@ -69,6 +82,45 @@ fn has_rule(evidence: &Evidence<'_>, clause: &Clause) -> bool {
     let human = follower.or_else(|| clause.predicate.human());
     let human = human.and_then(|human| evidence.proposal.and_then(|proposal| proposal.human(human)));
     human.is_some_and(|human| human.rules.iter().any(|rule| does(&clause.predicate, &rule.act)))
+}
+
+/// Who of the group of a clause had left for a rule of their own by then: places of people cannot mend that.
+fn left_by_rule(evidence: &Evidence<'_>, clause: &Clause, by_s: f64) -> Option<(HumanId, Action)> {
+    let proposal = evidence.proposal?;
+    let group = proposal.groups.iter().find(|group| clause.predicate.group() == Some(group.id))?;
+    let own = |human: HumanId, leaf: &str| {
+        let rules = proposal.human(human).into_iter().flat_map(|human| &human.rules);
+        rules.map(|rule| &rule.act).find(|act| leads_away(act) && act.is_leaf(leaf)).cloned()
+    };
+    evidence.recording.events.iter().find_map(|event| {
+        let EventKind::Leaf { human, leaf } = &event.kind else { return None };
+        let member = group.members.contains(human) && event.time.secs() <= by_s + LEAVES_S;
+        if member { own(*human, leaf).map(|act| (*human, act)) } else { None }
+    })
+}
+
+/// Time after which a group that somebody leaves is seen to be broken at the latest, s.
+const LEAVES_S: f64 = 1.0;
+
+/// Whether an action leads a person away from where they stand.
+const fn leads_away(act: &Action) -> bool {
+    match act {
+        Action::RunAway
+        | Action::FollowRobot
+        | Action::FollowHuman(_)
+        | Action::GiveWay
+        | Action::Block
+        | Action::Approach
+        | Action::ApproachTo(_)
+        | Action::TurnBack
+        | Action::GoTo { .. } => true,
+        Action::Navigate
+        | Action::LookAtRobot
+        | Action::LookAt(_)
+        | Action::StandStill
+        | Action::ChangePace(_)
+        | Action::MakeRoom => false,
+    }
 }
 
 /// Whether an action is what a clause tests.

@@ -151,14 +151,18 @@ pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
     // A stop in the middle of the approach must not hide it: every stretch up to the closest point counts.
     let approach = moments.iter().filter(|moment| moment.t >= start.t && moment.t <= nearest.t.max(start.t + 1.0));
     let limit = 150.0_f64.to_radians();
-    let marks = approach.map(|moment| {
+    let parts = |moment: &Moment| {
         let ahead = if moment.distance_m > 1e-6 { moment.ahead_m / moment.distance_m } else { 1.0 };
-        let margin = (moment.course_rad - limit)
-            .min((moment.human.speed() - WALKING_MPS) * 2.0)
-            .min(moment.closing_mps)
-            .min(ahead - 0.5);
-        Mark::new(moment.t, margin)
-    });
+        [
+            (moment.course_rad - limit, "is not head on"),
+            ((moment.human.speed() - WALKING_MPS) * 2.0, "hardly walks"),
+            (moment.closing_mps, "comes no nearer"),
+            (ahead - 0.5, "is not ahead of the robot"),
+        ]
+    };
+    let worst =
+        |moment: &Moment| parts(moment).into_iter().min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((0.0, ""));
+    let marks = approach.map(|moment| Mark::new(moment.t, worst(moment).0));
     let marks: Vec<Mark> = marks.collect();
     let Some(found) = held(marks.iter().copied(), KEPT_SECS, 0.0) else {
         return Finding::fails(
@@ -168,9 +172,13 @@ pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
         );
     };
     let at = found.first_s.unwrap_or(found.best_s);
-    let angle = moments.iter().find(|moment| moment.t >= at).map_or(0.0, |moment| moment.course_rad.to_degrees());
+    let then = moments.iter().find(|moment| moment.t >= at);
+    let angle = then.map_or(0.0, |moment| moment.course_rad.to_degrees());
+    // The moment is the best that there was; where that is not good enough, what it lacks is said.
+    let lacks = then.filter(|_| found.margin < 0.0).map_or("", |moment| worst(moment).1);
+    let lacks = if lacks.is_empty() { String::new() } else { format!(", but {lacks} for {KEPT_SECS:.1} s on end") };
     let text = format!(
-        "{human} at {angle:.0}° to the robot's heading at {at:.1} s (150° to 180° asked), closest {:.2} m at {:.1} s",
+        "{human} at {angle:.0}° to the robot's heading at {at:.1} s (150° to 180° asked){lacks}, closest {:.2} m at {:.1} s",
         nearest.distance_m, nearest.t
     );
     let longest = stretches(marks, 0.0).into_iter().map(|(from, to)| to - from).fold(0.0, f64::max);
