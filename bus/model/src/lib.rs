@@ -72,7 +72,7 @@ pub use grid::{Cell, Grid};
 pub use hash::{Digest, DigestWriter};
 pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
 pub use likeness::Likeness;
-pub use location::{Door, DoorKind, DoorOpens, Location};
+pub use location::{AreaName, Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths, Visit, ordinal};
 pub use person_model::PersonModel;
 pub use place::PlaceClass;

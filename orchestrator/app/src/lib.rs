@@ -55,6 +55,7 @@ mod folder;
 pub mod fsck;
 pub mod fuzz;
 pub mod golden;
+pub mod graphs;
 mod history;
 mod in_process;
 mod index;
