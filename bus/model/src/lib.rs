@@ -28,6 +28,7 @@ pub mod location;
 pub mod place;
 
 pub mod behaviors;
+pub mod building;
 pub mod clause;
 pub mod form;
 pub mod likeness;
@@ -62,6 +63,7 @@ pub mod words;
 pub use nalgebra;
 
 pub use behaviors::{Behaviors, HumanBehavior};
+pub use building::{BuildingBrief, BuildingKind, CorridorForm, RoomBrief, Unmet};
 pub use clause::{Clause, ClauseRole, Predicate};
 pub use drive::{Command, Cues, Observation, RobotDriver, SeenDoor, SeenPerson, SeenRobot};
 pub use fault::{FailureClass, Family, Fault, FaultCode, Payload, Remedy, Where};

@@ -6,7 +6,10 @@ mod annotation {
     use socrates_annotate::{Annotation, Options, RemarkKind, annotate, files};
     use socrates_maps::random::{self, Kind};
     use socrates_maps::{check, parse, shipped};
-    use socrates_model::{Cell, DoorKind, FaultCode, Grid, Location, PlaceClass, Point, Pose};
+    use socrates_model::{
+        BuildingBrief, BuildingKind, Cell, CorridorForm, DoorKind, FaultCode, Grid, Location, PlaceClass, Point, Pose,
+        RoomBrief,
+    };
 
     /// Seeds of each kind; none was chosen for what it draws. `SOCRATES_WORLDS` sets another number.
     fn seeds() -> u64 {
@@ -103,6 +106,46 @@ mod annotation {
     #[test]
     fn doors_of_random_homes_are_found_again() {
         every_world(Kind::Home);
+    }
+
+    /// A brief with rooms, elevators and a form of corridors.
+    fn brief(number: usize) -> BuildingBrief {
+        let kind = BuildingKind::ALL[number % 3];
+        let room = |kind: &str, count: u32| RoomBrief {
+            kind: kind.to_owned(),
+            count,
+            name: None,
+            area_m2: None,
+            beside: None,
+            open: None,
+            door_m: None,
+        };
+        let (rooms, elevators) = match kind {
+            BuildingKind::Hospital => (vec![room("ward", 2), room("nurse station", 1)], 2),
+            BuildingKind::Office => (vec![room("office", 5), room("meeting room", 1)], 1),
+            BuildingKind::Home => (vec![room("bedroom", 2), room("kitchen", 1)], 0),
+        };
+        let form = (kind != BuildingKind::Home).then(|| CorridorForm::ALL[number / 3 % 8]);
+        BuildingBrief { kind, form, corridor_m: None, door_m: None, elevators, only: false, rooms }
+    }
+
+    #[test]
+    fn the_graph_of_a_building_is_found_again_on_its_map() {
+        let mut sums = [(0, 0, 0); 3];
+        for number in 0..24 {
+            let built = random::build(&brief(number), 1).unwrap_or_else(|why| panic!("{number}: {why:?}"));
+            let score = scored(&built.location);
+            for (sum, row) in sums.iter_mut().zip([score.doors, score.nodes, score.edges]) {
+                *sum = (sum.0 + row.first, sum.1 + row.second, sum.2 + row.matched);
+            }
+            assert_eq!(score.detours.unreached, 0, "{number}");
+        }
+        let [doors, nodes, edges] = sums.map(|(truth, made, both)| {
+            2.0 * f64::from(u32::try_from(both).unwrap()) / f64::from(u32::try_from(truth + made).unwrap())
+        });
+        println!("doors F1 {doors:.3}, nodes F1 {nodes:.3}, edges F1 {edges:.3} of {sums:?}");
+        assert!(doors >= 0.95, "doors F1 {doors:.3}");
+        assert!(nodes >= 0.5 && edges >= 0.3, "nodes F1 {nodes:.3}, edges F1 {edges:.3}");
     }
 
     #[test]
