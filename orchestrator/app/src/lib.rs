@@ -19,6 +19,7 @@ mod batch;
 mod batch_stats;
 pub mod bench;
 pub mod bt;
+pub mod build;
 mod bundle;
 mod bundler;
 mod calls;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use socrates_app::output::Printer;
-use socrates_app::{graphs, map};
+use socrates_app::{build, graphs, map};
 
 use super::{Outcome, done};
 
@@ -57,6 +57,17 @@ enum MapVerb {
         first: String,
         /// A shipped name, a folder, or a map without a scene graph, which is annotated.
         second: String,
+    },
+    /// Build a floor with the rooms, corridors and elevators that a brief asks for.
+    Build {
+        /// A brief (a .toml file), or a sentence: "a hospital with two wards, a lobby with two elevators".
+        what: String,
+        /// What the brief leaves open is drawn by this seed; the same brief and seed give the same files.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Folder to write. One that holds anything is left as it is.
+        #[arg(long, short)]
+        out: PathBuf,
     },
     /// Write a location in a format of others, with a list of what that format cannot hold beside it.
     Export {
@@ -130,6 +141,7 @@ impl Map {
                 };
                 map::annotate(talk, map, &options)
             }
+            MapVerb::Build { what, seed, out } => build::build(talk, what, *seed, out),
             MapVerb::Export { location, to, out } => graphs::export(talk, location, to, out.as_deref()),
             MapVerb::Import { file, from, map, level, out } => {
                 let options = graphs::ImportOptions {
