@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Where};
+use socrates_model::{AreaName, Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Where};
 
 use crate::ground::Ground;
 use crate::openings::Enclosures;
@@ -37,6 +37,9 @@ pub fn check(location: &Location) -> Vec<Fault> {
     part_problems(location, &mut faults);
     for (index, door) in location.doors.iter().enumerate() {
         door_problems(location, index, door, &mut faults);
+    }
+    for (index, area) in location.names.iter().enumerate() {
+        name_problems(location, index, area, &mut faults);
     }
     if faults.iter().all(Fault::is_soft) {
         open_plan(location, &mut faults);
@@ -160,6 +163,16 @@ fn names(ids: &[NodeId]) -> String {
     if more > 0 { format!("{} and {more} more", shown.join(", ")) } else { shown.join(", ") }
 }
 
+/// What is wrong with a door of a location: its line, its rule, and the nodes behind it.
+#[must_use]
+pub fn check_door(location: &Location, index: usize) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    if let Some(door) = location.doors.get(index) {
+        door_problems(location, index, door, &mut faults);
+    }
+    faults
+}
+
 fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Vec<Fault>) {
     let mut fault = |code: FaultCode, message: String| {
         faults.push(Fault::new(code, Where::file(EXTRA).at_key(format_args!("door `{}`", door.id)), message))
@@ -207,6 +220,33 @@ fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Ve
             FaultCode::MValue,
             format!("its inside nodes lie on both sides of the door line, one at ({:.2}, {:.2}) m", other.x, other.y),
         );
+    }
+}
+
+/// Longest name of an area, letters.
+const NAME_MAX: usize = 60;
+
+fn name_problems(location: &Location, index: usize, area: &AreaName, faults: &mut Vec<Fault>) {
+    let shown: String = area.name.chars().take(NAME_MAX).collect();
+    let mut fault = |code: FaultCode, message: String| {
+        faults.push(Fault::new(code, Where::file(EXTRA).at_key(format_args!("name `{shown}`")), message));
+    };
+    let letters = area.name.chars().count();
+    if area.name.trim() != area.name || !(1..=NAME_MAX).contains(&letters) || area.name.chars().any(char::is_control) {
+        fault(
+            FaultCode::MValue,
+            format!("is no name; allowed: 1 to {NAME_MAX} letters on one line, no blank at either end"),
+        );
+    }
+    let lower = area.name.to_lowercase();
+    if location.names.iter().take(index).any(|other| other.name.to_lowercase() == lower) {
+        fault(FaultCode::MId, "the name is taken by an earlier area; list all its nodes in one entry".to_owned());
+    }
+    if area.nodes.is_empty() {
+        fault(FaultCode::MValue, "`nodes` is empty; name the nodes of the area".to_owned());
+    }
+    for id in area.nodes.iter().filter(|id| location.graph.node(id).is_none()) {
+        fault(FaultCode::MId, format!("its node `{id}` is no node of the scene graph"));
     }
 }
 
@@ -258,6 +298,7 @@ mod tests {
                 hold_s: 5.0,
                 inside: vec![id("b")],
             }],
+            names: Vec::new(),
             warnings: vec![],
         }
     }

@@ -1,13 +1,14 @@
-//! `location.toml`: the description and the doors of a location.
+//! `location.toml`: the description, the doors and the names of areas of a location.
 
 use serde::Deserialize;
-use socrates_model::{Door, Fault, Where};
+use socrates_model::{AreaName, Door, Fault, Where};
 
-use crate::keys::{DOOR, Keys};
+use crate::keys::{AREA_NAME, DOOR, Keys};
 use crate::read::EXTRA;
 
 /// The keys of the file.
-pub(crate) const LOCATION: Keys = Keys { needed: &[], other: &["description", "doors"], tables: &[("doors", &DOOR)] };
+pub(crate) const LOCATION: Keys =
+    Keys { needed: &[], other: &["description", "doors", "names"], tables: &[("doors", &DOOR), ("names", &AREA_NAME)] };
 
 /// What the file may say; unknown keys are refused.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -19,6 +20,9 @@ pub(crate) struct LocationFile {
     /// Doors in the map frame.
     #[serde(default)]
     pub(crate) doors: Vec<Door>,
+    /// Names that people gave to areas.
+    #[serde(default)]
+    pub(crate) names: Vec<AreaName>,
 }
 
 /// Reads the file; a problem goes to `faults`.

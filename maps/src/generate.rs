@@ -5,15 +5,9 @@ use std::collections::BTreeMap;
 use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{Cell, Fault, FaultCode, Grid, Location, Point, Pose, Where};
 
-use crate::image::gray_png;
 use crate::plan::{PLAN, Plan};
-use crate::read::{EXTRA, GRAPH, MAP, parse};
+use crate::read::{EXTRA, GRAPH, parse};
 use crate::written;
-
-/// Name of the image.
-const IMAGE: &str = "map.png";
-/// Shades as map tools write them; 205 lies between the two thresholds below.
-const SHADES: [(Cell, u8); 3] = [(Cell::Free, 254), (Cell::Occupied, 0), (Cell::Unknown, 205)];
 
 /// Makes the files of a location folder from the text of its `plan.toml`: `map.yaml`, `map.png`,
 /// `scene_graph.json` and `location.toml`.
@@ -46,16 +40,11 @@ pub(crate) fn made(plan_toml: &str) -> Result<Made, Vec<Fault>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let shades: Vec<u8> = grid.cells.iter().map(shade).collect();
-    let image = gray_png(grid.width, grid.height, &shades).map_err(|why| {
+    let mut files = written::map_files(&grid).map_err(|why| {
         vec![Fault::new(FaultCode::MImage, Where::file(PLAN), format!("the image cannot be written: {why}"))]
     })?;
-    let files = BTreeMap::from([
-        (MAP.to_owned(), map_yaml(&grid).into_bytes()),
-        (IMAGE.to_owned(), image),
-        (GRAPH.to_owned(), graph_json(&plan, &grid).into_bytes()),
-        (EXTRA.to_owned(), extra_toml(&plan).into_bytes()),
-    ]);
+    files.insert(GRAPH.to_owned(), graph_json(&plan, &grid).into_bytes());
+    files.insert(EXTRA.to_owned(), extra_toml(&plan).into_bytes());
     match parse(&files, "plan") {
         Ok(location) => Ok((files, location)),
         Err(faults) => {
@@ -63,10 +52,6 @@ pub(crate) fn made(plan_toml: &str) -> Result<Made, Vec<Fault>> {
             Err(faults.into_iter().map(moved).collect())
         }
     }
-}
-
-fn shade(cell: &Cell) -> u8 {
-    SHADES.iter().find(|(known, _)| known == cell).map_or(205, |(_, shade)| *shade)
 }
 
 /// Paints in a fixed order: floors with walls round them, walls, openings, blocks.
@@ -156,13 +141,6 @@ fn rounded(grid: &Grid, at: [f64; 2]) -> [f64; 2] {
     [point.x, point.y]
 }
 
-fn map_yaml(grid: &Grid) -> String {
-    format!(
-        "image: {IMAGE}\nmode: trinary\nresolution: {:?}\norigin: [0.0, 0.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
-        grid.resolution_m
-    )
-}
-
 fn graph_json(plan: &Plan, grid: &Grid) -> String {
     let nodes = plan.nodes.iter().map(toml::Spanned::get_ref);
     let nodes = nodes.map(|node| (node.id.as_str(), node.kind.as_str(), pixel(grid, node.at)));
@@ -176,7 +154,8 @@ fn graph_json(plan: &Plan, grid: &Grid) -> String {
 }
 
 fn extra_toml(plan: &Plan) -> String {
-    written::location_toml(&plan.description, &plan.doors, |at| format!("[{:?}, {:?}]", at.x, at.y))
+    let doors = written::location_toml(&plan.description, &plan.doors, |at| format!("[{:?}, {:?}]", at.x, at.y));
+    doors + &written::names_toml(&plan.names)
 }
 
 #[cfg(test)]

@@ -18,6 +18,9 @@ pub(crate) struct Keys {
 pub(crate) const DOOR: Keys =
     Keys { needed: &["id", "kind", "from", "to", "opens"], other: &["hold_s", "inside"], tables: &[] };
 
+/// `[[names]]`.
+pub(crate) const AREA_NAME: Keys = Keys { needed: &["name", "nodes"], other: &[], tables: &[] };
+
 impl Keys {
     /// What kind of mistake a text holds that its type refuses: it is no TOML, a key is unknown or missing, or a value is wrong.
     pub(crate) fn mistake(&self, text: &str) -> FaultCode {
@@ -68,6 +71,10 @@ to = [4.0, 3.0]
 opens = "always"
 hold_s = 12.0
 inside = ["b"]
+
+[[names]]
+name = "pharmacy"
+nodes = ["b"]
 "#;
 
     /// Every key of a table, in the whole plan.
@@ -82,14 +89,17 @@ inside = ["b"]
         assert!(PLAN_KEYS.fit(&WHOLE.parse().unwrap()));
         let mut keys = Vec::new();
         all(&PLAN_KEYS, &mut keys);
-        assert!(keys.iter().all(|key| WHOLE.contains(&format!("{key} = ")) || *key == "doors"), "{keys:?}");
+        assert!(
+            keys.iter().all(|key| WHOLE.contains(&format!("{key} = ")) || ["doors", "names"].contains(key)),
+            "{keys:?}"
+        );
         // A needed key that is left out, and one that nobody knows, are refused by the type too, and are mistakes of keys.
-        for key in PLAN_KEYS.needed.iter().chain(DOOR.needed) {
+        for key in PLAN_KEYS.needed.iter().chain(DOOR.needed).chain(AREA_NAME.needed) {
             let without = WHOLE.replacen(&format!("{key} = "), "unknown_key = ", 1);
             let faults = Plan::read(&without).unwrap_err();
             assert_eq!(faults[0].code, FaultCode::MKey, "{key}: {}", faults[0]);
         }
-        for key in PLAN_KEYS.other.iter().chain(DOOR.other).filter(|key| **key != "doors") {
+        for key in PLAN_KEYS.other.iter().chain(DOOR.other).filter(|key| !["doors", "names"].contains(key)) {
             let lines: Vec<&str> = WHOLE.lines().filter(|line| !line.starts_with(&format!("{key} = "))).collect();
             assert!(Plan::read(&lines.join("\n")).is_ok(), "{key} is needed");
         }

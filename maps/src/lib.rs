@@ -40,7 +40,7 @@ pub mod random;
 pub mod shipped;
 pub mod written;
 
-pub use check::check;
+pub use check::{check, check_door};
 pub use field::{DistanceField, free_disc, nearest_free};
 pub use generate::generate;
 pub use geodesic::Geodesic;

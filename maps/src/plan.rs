@@ -1,11 +1,11 @@
 //! `plan.toml`: a small floor plan from which a location folder is made.
 
 use serde::Deserialize;
-use socrates_model::{Door, Fault, FaultCode, Where};
+use socrates_model::{AreaName, Door, Fault, FaultCode, Where};
 use toml::Spanned;
 
 use crate::doors_file::{line_at, toml_fault};
-use crate::keys::{DOOR, Keys};
+use crate::keys::{AREA_NAME, DOOR, Keys};
 use crate::map_file::MAX_PIXELS;
 
 /// Name of the file in messages.
@@ -16,11 +16,12 @@ const SIDE_MAX_M: f64 = 500.0;
 /// The keys of the file.
 pub(crate) const PLAN_KEYS: Keys = Keys {
     needed: &["description", "size_m", "resolution_m", "floors", "nodes", "edges"],
-    other: &["wall_thickness_m", "walls", "openings", "blocks", "doors"],
+    other: &["wall_thickness_m", "walls", "openings", "blocks", "doors", "names"],
     tables: &[
         ("nodes", &Keys { needed: &["id", "type", "at"], other: &[], tables: &[] }),
         ("edges", &Keys { needed: &["type", "along"], other: &[], tables: &[] }),
         ("doors", &DOOR),
+        ("names", &AREA_NAME),
     ],
 };
 
@@ -47,6 +48,8 @@ pub(crate) struct Plan {
     pub(crate) edges: Vec<Spanned<PlanEdges>>,
     #[serde(default)]
     pub(crate) doors: Vec<Door>,
+    #[serde(default)]
+    pub(crate) names: Vec<AreaName>,
 }
 
 #[derive(Debug, Deserialize)]

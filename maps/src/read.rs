@@ -105,6 +105,7 @@ pub fn load_raw(file: &Path) -> Result<MapWithFiles, Vec<Fault>> {
         grid,
         graph: SceneGraph::default(),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: warnings.into_iter().chain(soft.iter().map(ToString::to_string)).collect(),
     };
     Ok((location, files))
@@ -164,6 +165,7 @@ fn assemble(files: &BTreeMap<String, Vec<u8>>, name: &str, missing: Missing) -> 
         grid,
         graph,
         doors: extra.doors,
+        names: extra.names,
         warnings: Vec::new(),
     };
     route_edges(&mut location, &mut faults, &mut warnings);

@@ -1,6 +1,32 @@
 //! The files of a location as they are written: the same bytes for the same values.
 
-use socrates_model::{Door, DoorKind, DoorOpens, Point};
+use std::collections::BTreeMap;
+
+use socrates_model::{AreaName, Cell, Door, DoorKind, DoorOpens, Grid, Point, Pose};
+
+use crate::image::gray_png;
+use crate::read::MAP;
+
+/// Name of the image.
+const IMAGE: &str = "map.png";
+/// Shades as map tools write them; 205 lies between the two thresholds of the map's file.
+const SHADES: [(Cell, u8); 3] = [(Cell::Free, 254), (Cell::Occupied, 0), (Cell::Unknown, 205)];
+
+/// `map.yaml` and the image of a grid, by their names.
+///
+/// # Errors
+/// A sentence where the image cannot be written, such as for a side of more than 2³² pixels.
+pub fn map_files(grid: &Grid) -> Result<BTreeMap<String, Vec<u8>>, String> {
+    let shade = |cell: &Cell| SHADES.iter().find(|(known, _)| known == cell).map_or(205, |(_, shade)| *shade);
+    let shades: Vec<u8> = grid.cells.iter().map(shade).collect();
+    let image = gray_png(grid.width, grid.height, &shades)?;
+    let Pose { x, y, yaw } = grid.origin;
+    let yaml = format!(
+        "image: {IMAGE}\nmode: trinary\nresolution: {:?}\norigin: [{x:?}, {y:?}, {yaw:?}]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
+        grid.resolution_m
+    );
+    Ok(BTreeMap::from([(MAP.to_owned(), yaml.into_bytes()), (IMAGE.to_owned(), image)]))
+}
 
 /// A node as it is written: id, type, and position on the image, pixels.
 pub type NodeText<'a> = (&'a str, &'a str, (f64, f64));
@@ -59,4 +85,15 @@ pub fn location_toml(description: &str, doors: &[Door], at: impl Fn(&Point) -> S
         ));
     }
     out
+}
+
+/// The lines of a `location.toml` that hold the names of areas; they stand behind those of [`location_toml`].
+#[must_use]
+pub fn names_toml(names: &[AreaName]) -> String {
+    let quoted = |text: &str| toml::Value::from(text).to_string();
+    let row = |area: &AreaName| {
+        let nodes: Vec<String> = area.nodes.iter().map(|id| quoted(id.as_str())).collect();
+        format!("\n[[names]]\nname = {}\nnodes = [{}]\n", quoted(&area.name), nodes.join(", "))
+    };
+    names.iter().map(row).collect()
 }

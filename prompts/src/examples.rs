@@ -112,6 +112,7 @@ pub fn location() -> Location {
         },
         graph,
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use socrates_model::{DoorOpens, Location, PlaceClass};
+use socrates_model::{AreaName, DoorOpens, Location, NodeId, PlaceClass};
 
 /// Longest label of a map that is shown, characters.
 const LABEL: usize = 40;
@@ -47,7 +47,18 @@ pub(crate) fn graph(location: &Location) -> String {
         }
         text.push('\n');
     }
+    text.push_str(&names(location));
     text
+}
+
+/// Names that people gave to areas, with their nodes; nothing where there is none.
+fn names(location: &Location) -> String {
+    let area = |area: &AreaName| {
+        let nodes: Vec<&str> = area.nodes.iter().map(NodeId::as_str).collect();
+        format!("{} = {}", label(&area.name), nodes.join(" "))
+    };
+    let rows: Vec<String> = location.names.iter().map(area).collect();
+    if rows.is_empty() { String::new() } else { format!("Names that people use: {}\n", rows.join(", ")) }
 }
 
 /// Nodes nearer to each other than this have coordinates with a decimal, m.
@@ -120,9 +131,10 @@ pub(crate) fn classes(location: &Location) -> String {
         .map(|(kind, class)| format!("{} = {class}", label(kind)))
         .collect();
     format!(
-        "# Places of this map\nClasses (number of places): {}\nThe map's own names: {}\n",
+        "# Places of this map\nClasses (number of places): {}\nThe map's own names: {}\n{}",
         counted.join(", "),
-        named.join(", ")
+        named.join(", "),
+        names(location)
     )
 }
 
@@ -149,6 +161,20 @@ mod tests {
         let map = tee_map();
         let told: Vec<_> = places(&map, kinds.into_iter()).into_iter().collect();
         assert_eq!(told, [("elevator", String::new()), ("intersection", "c".to_owned())]);
+    }
+
+    #[test]
+    fn names_that_people_gave_stand_with_the_places_and_with_the_map() {
+        let mut map = tee_map();
+        let before = [graph(&map), classes(&map)];
+        let node = map.graph.nodes()[0].id.clone();
+        map.names = vec![AreaName { name: "pharmacy\n# x".to_owned(), nodes: vec![node] }];
+        for (text, before) in [graph(&map), classes(&map)].iter().zip(&before) {
+            assert_eq!(
+                text,
+                &format!("{before}Names that people use: pharmacy x = c\n").replace("pharmacy x", "pharmacy x")
+            );
+        }
     }
 
     #[test]

@@ -35,6 +35,7 @@ pub(crate) fn tee_map() -> Location {
             vec![way("w"), way("e"), way("n")],
         ),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -66,6 +66,7 @@ pub(crate) fn plus_map() -> Location {
         },
         graph: SceneGraph::new(nodes, edges),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -28,6 +28,7 @@ pub mod location;
 pub mod place;
 
 pub mod behaviors;
+pub mod building;
 pub mod clause;
 pub mod form;
 pub mod likeness;
@@ -62,6 +63,7 @@ pub mod words;
 pub use nalgebra;
 
 pub use behaviors::{Behaviors, HumanBehavior};
+pub use building::{BuildingBrief, BuildingKind, CorridorForm, RoomBrief, Unmet};
 pub use clause::{Clause, ClauseRole, Predicate};
 pub use drive::{Command, Cues, Observation, RobotDriver, SeenDoor, SeenPerson, SeenRobot};
 pub use fault::{FailureClass, Family, Fault, FaultCode, Payload, Remedy, Where};
@@ -72,7 +74,7 @@ pub use grid::{Cell, Grid};
 pub use hash::{Digest, DigestWriter};
 pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
 pub use likeness::Likeness;
-pub use location::{Door, DoorKind, DoorOpens, Location};
+pub use location::{AreaName, Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths, Visit, ordinal};
 pub use person_model::PersonModel;
 pub use place::PlaceClass;

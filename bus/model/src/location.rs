@@ -84,6 +84,16 @@ impl Door {
     }
 }
 
+/// A name that people gave to an area: "the pharmacy" for a room that the map only calls a room.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AreaName {
+    /// The name as people say it, without an article; letters of any script, blanks allowed.
+    pub name: String,
+    /// Nodes of the area, the one to go to first.
+    pub nodes: Vec<NodeId>,
+}
+
 /// A location, whole: everything that a stage needs to know about the place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -101,6 +111,9 @@ pub struct Location {
     /// Doors, closed and open.
     #[serde(default)]
     pub doors: Vec<Door>,
+    /// Names that people gave to areas, in file order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub names: Vec<AreaName>,
     /// Things a reader of the folder should know (an edge that had to be routed round a wall …).
     #[serde(default)]
     pub warnings: Vec<String>,
@@ -111,6 +124,13 @@ impl Location {
     #[must_use]
     pub fn door_of(&self, node: &NodeId) -> Option<&Door> {
         self.doors.iter().find(|door| door.inside.contains(node))
+    }
+
+    /// The area of this name; case does not matter.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<&AreaName> {
+        let wanted = name.trim().to_lowercase();
+        self.names.iter().find(|area| area.name.to_lowercase() == wanted)
     }
 
     /// The door of this name.

@@ -24,6 +24,10 @@ use crate::throat::{self, Opening, Throat};
 const COARSE_M: f64 = 0.25;
 /// Least floor that is annotated, m².
 const LEAST_M2: f64 = 3.0;
+/// A floor of a building has at least so many regions: two rooms and what leads to them.
+const FLOOR_REGIONS: usize = 3;
+/// Such a floor has at least this share of the floor that is annotated.
+const FLOOR_SHARE: f64 = 0.3;
 /// Floor that is cut off is named from this on, m².
 const NAMED_M2: f64 = 4.0;
 /// At most so many places of one kind are named one by one.
@@ -322,8 +326,37 @@ fn elevators(
     Ok(cars)
 }
 
+/// Says where floor lies that is as much a building as what is annotated: several floors in one picture.
+fn several_floors(floor: &Floor, regions: &Regions, kept: &BTreeSet<usize>, remarks: &mut Vec<Remark>) {
+    let area = |of: &BTreeSet<usize>| {
+        of.iter().filter_map(|at| regions.all.get(*at)).map(|region| region.area_m2).sum::<f64>()
+    };
+    let own = area(kept);
+    let mut seen = kept.clone();
+    let mut floors: Vec<Spot> = Vec::new();
+    for (at, region) in regions.all.iter().enumerate() {
+        if region.outside || seen.contains(&at) {
+            continue;
+        }
+        let part = regions.reached(at);
+        seen.extend(&part);
+        if part.len() >= FLOOR_REGIONS && area(&part) >= FLOOR_SHARE * own {
+            floors.push(roomiest(floor, region));
+        }
+    }
+    if let Some(first) = floors.first() {
+        let text = format!(
+            "the picture holds {} floors that nothing joins; one is annotated: annotate each as a location of its own, with its region \
+             `--within X,Y;X,Y;…` or a point on it `--keep X,Y`",
+            floors.len() + 1
+        );
+        remarks.push(Remark::new(RemarkKind::SeveralFloors, Some(*first), text));
+    }
+}
+
 /// Says what floor has no nodes.
 fn left_out(floor: &Floor, regions: &Regions, kept: &BTreeSet<usize>, remarks: &mut Vec<Remark>) {
+    several_floors(floor, regions, kept, remarks);
     let mut lost: Vec<(f64, Spot)> = Vec::new();
     for (at, region) in regions.all.iter().enumerate() {
         if kept.contains(&at) || region.area_m2 < NAMED_M2 {

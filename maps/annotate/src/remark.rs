@@ -18,6 +18,8 @@ pub enum RemarkKind {
     Coarse,
     /// Free floor that nothing leads to; it has no nodes.
     CutOff,
+    /// Several floors of a building, or several buildings, in one picture; one of them is annotated.
+    SeveralFloors,
     /// Free floor round the building; it has no nodes.
     Outside,
     /// A gap narrower than the robot.
@@ -41,6 +43,7 @@ impl RemarkKind {
             Self::Things => "things",
             Self::Coarse => "coarse",
             Self::CutOff => "cut_off",
+            Self::SeveralFloors => "several_floors",
             Self::Outside => "outside",
             Self::Gap => "gap",
             Self::Elevator => "elevator",

@@ -6,7 +6,10 @@ mod annotation {
     use socrates_annotate::{Annotation, Options, RemarkKind, annotate, files};
     use socrates_maps::random::{self, Kind};
     use socrates_maps::{check, parse, shipped};
-    use socrates_model::{Cell, DoorKind, FaultCode, Grid, Location, PlaceClass, Point, Pose};
+    use socrates_model::{
+        BuildingBrief, BuildingKind, Cell, CorridorForm, DoorKind, FaultCode, Grid, Location, PlaceClass, Point, Pose,
+        RoomBrief,
+    };
 
     /// Seeds of each kind; none was chosen for what it draws. `SOCRATES_WORLDS` sets another number.
     fn seeds() -> u64 {
@@ -105,6 +108,48 @@ mod annotation {
         every_world(Kind::Home);
     }
 
+    /// A brief with rooms, elevators and a form of corridors.
+    fn brief(number: usize) -> BuildingBrief {
+        let kind = BuildingKind::ALL[number % 3];
+        let room = |kind: &str, count: u32| RoomBrief {
+            kind: kind.to_owned(),
+            count,
+            name: None,
+            area_m2: None,
+            beside: None,
+            open: None,
+            door_m: None,
+        };
+        let (rooms, elevators) = match kind {
+            BuildingKind::Hospital => (vec![room("ward", 2), room("nurse station", 1)], 2),
+            BuildingKind::Office => (vec![room("office", 5), room("meeting room", 1)], 1),
+            BuildingKind::Home => (vec![room("bedroom", 2), room("kitchen", 1)], 0),
+        };
+        let form = (kind != BuildingKind::Home).then(|| CorridorForm::ALL[number / 3 % 8]);
+        BuildingBrief { kind, form, corridor_m: None, door_m: None, elevators, only: false, rooms }
+    }
+
+    #[test]
+    fn the_graph_of_a_building_is_found_again_on_its_map() {
+        let (mut sums, mut pairs) = ([(0, 0, 0); 3], (0, 0));
+        for number in 0..24 {
+            let built = random::build(&brief(number), 1).unwrap_or_else(|why| panic!("{number}: {why:?}"));
+            let score = scored(&built.location);
+            for (sum, row) in sums.iter_mut().zip([score.doors, score.nodes, score.edges]) {
+                *sum = (sum.0 + row.first, sum.1 + row.second, sum.2 + row.matched);
+            }
+            pairs = (pairs.0 + score.detours.pairs, pairs.1 + score.detours.unreached);
+        }
+        let [doors, nodes, edges] = sums.map(|(truth, made, both)| {
+            2.0 * f64::from(u32::try_from(both).unwrap()) / f64::from(u32::try_from(truth + made).unwrap())
+        });
+        println!(
+            "doors F1 {doors:.3}, nodes F1 {nodes:.3}, edges F1 {edges:.3} of {sums:?}; ways not reached {pairs:?}"
+        );
+        assert!(doors >= 0.95, "doors F1 {doors:.3}");
+        assert!(nodes >= 0.5 && edges >= 0.3, "nodes F1 {nodes:.3}, edges F1 {edges:.3}");
+    }
+
     #[test]
     fn the_files_of_an_annotation_are_read_as_a_location_and_are_the_same_each_time() {
         let mut folder = shipped::files("office").unwrap();
@@ -145,6 +190,29 @@ mod annotation {
             made.remarks
         );
         assert_eq!(made.graph.parts().len(), 1);
+    }
+
+    #[test]
+    fn several_floors_in_one_picture_are_said_and_each_is_found_by_a_point_on_it() {
+        let (one, other) = (shipped::load("hospital").unwrap().grid, shipped::load("office").unwrap().grid);
+        let width = one.width + other.width;
+        let height = one.height.max(other.height);
+        let cell = |place: usize| {
+            let (column, row) = (place % width, place / width);
+            if column < one.width { one.at(column, row) } else { other.at(column - one.width, row) }
+        };
+        let cells = (0..width * height).map(cell).collect();
+        let both = Grid { width, height, resolution_m: 0.1, origin: Pose::new(0.0, 0.0, 0.0), cells };
+        let made = found(&both);
+        let remark = made.remarks.iter().find(|remark| remark.kind == RemarkKind::SeveralFloors).unwrap();
+        assert!(remark.text.contains("2 floors") && remark.text.contains("--within"), "{}", remark.text);
+        let keep = Options { keep: remark.at, ..Options::default() };
+        let second = annotate(&both, &keep).unwrap();
+        assert_ne!(second.graph, made.graph);
+        for name in ["hospital", "office", "warehouse"] {
+            let alone = found(&shipped::load(name).unwrap().grid);
+            assert!(!kinds_of(&alone).contains(&RemarkKind::SeveralFloors), "{name}");
+        }
     }
 
     #[test]

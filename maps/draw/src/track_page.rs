@@ -100,6 +100,7 @@ fn open_floor(recording: &Recording) -> Location {
         grid,
         graph: SceneGraph::default(),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

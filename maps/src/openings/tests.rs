@@ -37,6 +37,7 @@ fn map(floors: &[(f64, f64, f64, f64)], nodes: &[(&str, &str, f64, f64)], edges:
         grid,
         graph: SceneGraph::new(nodes.iter().map(node).collect(), edges.iter().map(edge).collect()),
         doors: vec![],
+        names: Vec::new(),
         warnings: vec![],
     }
 }

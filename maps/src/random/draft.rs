@@ -39,6 +39,14 @@ struct DraftDoor {
     inside: Vec<NodeAt>,
 }
 
+/// A room that was made.
+#[derive(Debug, Clone)]
+pub(super) struct MadeRoom {
+    pub(super) kind: String,
+    pub(super) area: Area,
+    pub(super) nodes: Vec<NodeAt>,
+}
+
 /// The plan as far as it is made.
 #[derive(Debug, Default)]
 pub(super) struct Draft {
@@ -53,9 +61,16 @@ pub(super) struct Draft {
     edges: Vec<(String, Vec<NodeAt>)>,
     doors: Vec<DraftDoor>,
     names: BTreeMap<String, usize>,
+    pub(super) rooms: Vec<MadeRoom>,
+    /// Names that people use, with the nodes of their areas.
+    pub(super) called: Vec<(String, Vec<NodeAt>)>,
 }
 
 impl Draft {
+    pub(super) fn made(&mut self, kind: &str, area: Area, nodes: &[NodeAt]) {
+        self.rooms.push(MadeRoom { kind: kind.to_owned(), area, nodes: nodes.to_vec() });
+    }
+
     pub(super) fn floor(&mut self, area: Area) {
         self.floors.push(area);
     }
@@ -109,6 +124,10 @@ impl Draft {
         self.nodes.get(node).is_some_and(|node| node.kind == kind)
     }
 
+    pub(super) fn id(&self, node: NodeAt) -> &str {
+        self.nodes.get(node).map_or("", |node| node.id.as_str())
+    }
+
     pub(super) fn at(&self, node: NodeAt) -> Option<Spot> {
         self.nodes.get(node).map(|node| node.at)
     }
@@ -141,6 +160,11 @@ impl Draft {
 
     /// The text of `plan.toml`, turned by quarter turns and mirrored as drawn.
     pub(super) fn text(&self, seed: u64, kind: &str, chance: &mut Chance) -> String {
+        self.text_under(&format!("# Random {kind} of seed {seed}; form: maps/README.md. Lengths in m.\n"), chance)
+    }
+
+    /// The same under a first line of its own.
+    pub(super) fn text_under(&self, title: &str, chance: &mut Chance) -> String {
         let turn = Turn::of(&self.floors, chance);
         let quad = |a: Spot, b: Spot| {
             let (a, b) = (turn.spot(a), turn.spot(b));
@@ -151,7 +175,7 @@ impl Draft {
                 Area::between(turn.spot(Spot { x: area.x0, y: area.y0 }), turn.spot(Spot { x: area.x1, y: area.y1 }));
             quad_of(&turned)
         };
-        let mut out = format!("# Random {kind} of seed {seed}; form: maps/README.md. Lengths in m.\n");
+        let mut out = title.to_owned();
         let (wide, high) = (meters(turn.size.0), meters(turn.size.1));
         out.push_str(&format!(
             "description = \"{}\"\nsize_m = [{wide}, {high}]\nresolution_m = 0.1\nwall_thickness_m = 0.2\n\n",
@@ -188,6 +212,13 @@ impl Draft {
                 meters(to.x),
                 meters(to.y),
                 self.ids(&door.inside)
+            ));
+        }
+        for (name, nodes) in &self.called {
+            out.push_str(&format!(
+                "\n[[names]]\nname = {}\nnodes = [{}]\n",
+                toml::Value::from(name.as_str()),
+                self.ids(nodes)
             ));
         }
         out

@@ -15,12 +15,12 @@ use super::strip::{self, Access, Program};
 #[derive(Debug)]
 pub(super) struct Style {
     /// What a description calls it.
-    words: &'static str,
-    skeletons: &'static [Skeleton],
-    widths: Widths,
-    naming: Naming,
-    door: (i32, i32),
-    templates: &'static [Template],
+    pub(super) words: &'static str,
+    pub(super) skeletons: &'static [Skeleton],
+    pub(super) widths: Widths,
+    pub(super) naming: Naming,
+    pub(super) door: (i32, i32),
+    pub(super) templates: &'static [Template],
     /// How often it has elevators, percent, and how many at most.
     elevators: (i32, i32),
     /// How often a corridor is parted by a narrow doorway, percent.
@@ -114,10 +114,10 @@ pub(super) fn draw(style: &Style, chance: &mut Chance) -> Draft {
 
 /// Takes slots for elevators out of one strip where there is room for them, with fewer cars where there is not; gives the
 /// number of cars.
-fn lift(
+pub(super) fn lift(
     slots: &mut [(Frame, Vec<Vec<strip::Slot>>)],
     cars: i32,
-    program: &mut Program,
+    program: &mut Program<'_>,
     draft: &mut Draft,
     chance: &mut Chance,
 ) -> i32 {
@@ -138,7 +138,7 @@ fn lift(
 }
 
 /// The strips of a block: one beside its best corridor, or two back to back between two corridors.
-fn beside(laid: &Laid, lines: &[Line], block: &Block, widths: &Widths) -> Vec<(Frame, Vec<Access>)> {
+pub(super) fn beside(laid: &Laid, lines: &[Line], block: &Block, widths: &Widths) -> Vec<(Frame, Vec<Access>)> {
     let area = block.area;
     let along = |side: Side, area: Area| -> Vec<Access> {
         let frame = Frame::new(area, side);

@@ -190,7 +190,7 @@ fn beside(
     lattice: &Lattice,
     frame: Frame,
     nodes: &[Vec<NodeAt>],
-    program: &mut Program,
+    program: &mut Program<'_>,
     draft: &mut Draft,
     chance: &mut Chance,
 ) {

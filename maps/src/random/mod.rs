@@ -10,6 +10,7 @@
 //! in hospitals at least 2.5 m (NFPA 101 asks for 2.44 m), aisles 1.0 to 3.7 m (picking by hand to forklifts), elevator cars
 //! at least 2.1 m deep behind a lobby of one and a half times their depth.
 
+mod brief;
 mod chance;
 mod corridors;
 mod draft;
@@ -21,6 +22,7 @@ mod shape;
 mod skeleton;
 mod strip;
 mod warehouse;
+mod widths;
 
 #[cfg(test)]
 mod tests;
@@ -32,8 +34,10 @@ use std::str::FromStr;
 use socrates_model::{Fault, FaultCode, Location, Where};
 
 use crate::generate::made;
+pub use brief::{Built, NotBuilt, build};
 use chance::Chance;
 use draft::Draft;
+pub use widths::Remark;
 
 /// How often a building without a room that every one of its kind has is drawn anew.
 const DRAWN_ANEW: usize = 30;

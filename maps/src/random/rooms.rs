@@ -1,5 +1,7 @@
 //! What rooms there are in which building.
 
+use std::borrow::Cow;
+
 /// What stands in a room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Furniture {
@@ -34,10 +36,10 @@ pub(super) enum Furniture {
 }
 
 /// A type of room.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Template {
     /// Type of its nodes.
-    pub(super) kind: &'static str,
+    pub(super) kind: Cow<'static, str>,
     /// Least and largest area, m².
     pub(super) area_m2: (i32, i32),
     /// How often it is drawn, against the others.
@@ -50,6 +52,8 @@ pub(super) struct Template {
     pub(super) open: bool,
     /// How often its doorway has a door, percent.
     pub(super) door_percent: i32,
+    /// Least and largest width of its doorway, tenths, where it is not that of the building.
+    pub(super) door: Option<(i32, i32)>,
     pub(super) furniture: Furniture,
 }
 
@@ -65,7 +69,7 @@ const fn row(
         Entry::Door(percent) | Entry::NeededDoor(percent) => (false, percent),
     };
     let needed = matches!(entry, Entry::NeededOpen | Entry::NeededDoor(_));
-    Template { kind, area_m2, weight, most, needed, open, door_percent, furniture }
+    Template { kind: Cow::Borrowed(kind), area_m2, weight, most, needed, open, door_percent, door: None, furniture }
 }
 
 /// How a room is entered; the chance of a door is in percent.

@@ -50,21 +50,21 @@ pub(super) struct Slot {
 
 /// What the rooms of a building are drawn from, and which there are already.
 #[derive(Debug)]
-pub(super) struct Program {
-    templates: &'static [Template],
+pub(super) struct Program<'a> {
+    templates: &'a [Template],
     pub(super) door: (i32, i32),
-    counts: BTreeMap<&'static str, usize>,
+    counts: BTreeMap<String, usize>,
     /// Corridor nodes with an opening wider than a door.
     pub(super) open: Vec<NodeAt>,
 }
 
-impl Program {
-    pub(super) const fn new(templates: &'static [Template], door: (i32, i32)) -> Self {
+impl<'a> Program<'a> {
+    pub(super) const fn new(templates: &'a [Template], door: (i32, i32)) -> Self {
         Self { templates, door, counts: BTreeMap::new(), open: Vec::new() }
     }
 
     fn count(&self, template: &Template) -> usize {
-        self.counts.get(template.kind).copied().unwrap_or(0)
+        self.counts.get(template.kind.as_ref()).copied().unwrap_or(0)
     }
 
     /// Whether a room that every building of the kind has is not there.
@@ -123,11 +123,11 @@ pub(super) fn slots(frame: &Frame, accesses: &[Access], door: (i32, i32), chance
 }
 
 /// Fills slots that lie in a row with rooms.
-pub(super) fn fill(frame: &Frame, slots: &[Slot], program: &mut Program, draft: &mut Draft, chance: &mut Chance) {
+pub(super) fn fill(frame: &Frame, slots: &[Slot], program: &mut Program<'_>, draft: &mut Draft, chance: &mut Chance) {
     let depth = frame.depth();
     let mut rest = slots;
     while let Some(first) = rest.first() {
-        let mut choices: Vec<(usize, &'static Template, i32)> = Vec::new();
+        let mut choices: Vec<(usize, &Template, i32)> = Vec::new();
         let mut weights = Vec::new();
         for count in 1..=rest.len().min(MOST_SLOTS) {
             let Some(last) = rest.get(count - 1) else { break };
@@ -165,11 +165,11 @@ pub(super) fn fill(frame: &Frame, slots: &[Slot], program: &mut Program, draft: 
 }
 
 /// Builds one room over a group of slots.
-fn room(
+pub(super) fn room(
     frame: &Frame,
     group: &[Slot],
-    template: &'static Template,
-    program: &mut Program,
+    template: &Template,
+    program: &mut Program<'_>,
     draft: &mut Draft,
     chance: &mut Chance,
 ) {
@@ -177,7 +177,7 @@ fn room(
     let (u0, u1) = (first.from, last.to);
     let depth = frame.depth();
     draft.floor(frame.area((u0, u1), (0, depth)));
-    *program.counts.entry(template.kind).or_insert(0) += 1;
+    *program.counts.entry(template.kind.to_string()).or_insert(0) += 1;
     let entrance = if template.open { group.get(group.len() / 2) } else { chance.pick(group) };
     let Some(access) = entrance.map(|slot| slot.access) else { return };
     let around = 2 * access.half((u0, u1));
@@ -186,7 +186,7 @@ fn room(
     let wide = match access.width {
         Some(all) => all,
         None if open => wide,
-        None => chance.between(program.door).min(around),
+        None => chance.between(template.door.unwrap_or(program.door)).min(around),
     };
     let line = (access.u - wide / 2, access.u - wide / 2 + wide);
     let ends = (frame.spot(line.0, -1), frame.spot(line.1, -1));
@@ -201,6 +201,7 @@ fn room(
         let id = format!("{name}_{}", program.count(template));
         draft.door(id, ends, Opens::Near((access.before - 1).min(12)), ways.nodes.clone());
     }
+    draft.made(&template.kind, frame.area((u0, u1), (0, depth)), &ways.nodes);
     // The room's own frame: from its corner, so that furniture knows its walls.
     let own = frame.part((u0, u1));
     let mut kept: Vec<(Spot, Spot)> = ways.lines;
@@ -217,7 +218,7 @@ struct Ways {
 /// A room whose nodes are to be made.
 struct Inside<'a> {
     frame: Frame,
-    template: &'static Template,
+    template: &'a Template,
     /// From its left to its right wall.
     range: (i32, i32),
     stem: &'a str,
@@ -278,7 +279,8 @@ impl Inside<'_> {
 
     fn add(&self, (u, v): (i32, i32), draft: &mut Draft, ways: &mut Ways) -> NodeAt {
         let letter = char::from_u32(u32::from(b'a') + u32::try_from(ways.nodes.len()).unwrap_or(0)).unwrap_or('z');
-        let node = draft.node(format!("{}{}", self.stem, skip_door(letter)), self.template.kind, self.frame.spot(u, v));
+        let node =
+            draft.node(format!("{}{}", self.stem, skip_door(letter)), &self.template.kind, self.frame.spot(u, v));
         ways.nodes.push(node);
         node
     }

@@ -309,7 +309,7 @@ fn types_of_rooms_are_read_as_rooms_and_areas_and_needed_ones_are_there() {
     ] {
         let count = seeds();
         for template in templates {
-            let class = PlaceClass::of_type(template.kind);
+            let class = PlaceClass::of_type(&template.kind);
             let wanted = if template.kind.ends_with("AREA") { PlaceClass::OpenArea } else { PlaceClass::Room };
             assert_eq!(class, wanted, "{}", template.kind);
             let there = |seed: &u64| plan(*seed, kind).contains(&format!("\"{}\"", template.kind));

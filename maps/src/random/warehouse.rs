@@ -190,7 +190,7 @@ fn side_rooms(
     layout: &Layout,
     right: bool,
     columns: &[Vec<NodeAt>],
-    program: &mut Program,
+    program: &mut Program<'_>,
     draft: &mut Draft,
     chance: &mut Chance,
 ) {

@@ -248,7 +248,7 @@ pub(crate) fn not_usable(seed: u64, kind: Kind, faults: &[Fault]) -> Complaint {
 }
 
 /// Writes files into a folder.
-fn folder(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
+pub(crate) fn folder(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
     let cannot = |path: &Path, why: std::io::Error| {
         Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
     };

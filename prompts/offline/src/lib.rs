@@ -16,6 +16,7 @@
 
 #![expect(clippy::too_many_lines, reason = "the present reader of requests, as a whole, until it is replaced")]
 
+pub mod building;
 pub mod card;
 
 mod aside;

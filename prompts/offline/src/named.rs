@@ -1,7 +1,7 @@
 //! Places by the names that a map gives them: `the nurse station`, `ward 2`, `the packing area`.
 
 use socrates_maps::openings::Enclosures;
-use socrates_model::{GraphNode, Location, NodeId, PlaceClass};
+use socrates_model::{AreaName, GraphNode, Location, NodeId, PlaceClass};
 
 use crate::lexicon::lexicon;
 
@@ -84,8 +84,25 @@ pub(crate) fn telling(name: &str) -> Vec<String> {
         .collect()
 }
 
+/// The area that people gave a name, all of whose words are said; of several the one with the most words.
+fn given(location: &Location, name: &str) -> Option<Found> {
+    let said = tokens(name);
+    let words = |area: &AreaName| {
+        let own: Vec<String> = tokens(&area.name).into_iter().filter(|word| !lexicon().stop.contains(word)).collect();
+        (!own.is_empty() && own.iter().all(|word| said.contains(word))).then_some(own.len())
+    };
+    let areas = location.names.iter().filter_map(|area| Some((words(area)?, area)));
+    // The first of the longest.
+    let (_, area) = areas.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
+    let first = location.graph.node(area.nodes.first()?)?;
+    Some(Found { class: PlaceClass::of_type(&first.kind), nodes: area.nodes.clone(), exact: true })
+}
+
 /// The nodes of a map whose type, or whose door, has most of the words of a name; `None` where it has none of them.
 pub(crate) fn find(location: &Location, name: &str) -> Option<Found> {
+    if let Some(found) = given(location, name) {
+        return Some(found);
+    }
     let (wanted, all) = (telling(name), Enclosures::of(location));
     let own = |node: &GraphNode| {
         let mut own = tokens(&node.kind);
@@ -122,6 +139,28 @@ pub(crate) fn called(location: &Location, name: &str) -> Option<Found> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_that_people_gave_wins_over_the_types_of_a_map() {
+        let mut location = socrates_maps::shipped::load("hospital").unwrap();
+        assert_eq!(find(&location, "the pharmacy"), None);
+        let node = |id: &str| NodeId::new(id).unwrap();
+        let name = |name: &str, nodes: &[&str]| AreaName {
+            name: name.to_owned(),
+            nodes: nodes.iter().map(|id| node(id)).collect(),
+        };
+        location.names = vec![name("pharmacy", &["p2"]), name("Old Pharmacy", &["ns"]), name("Café Süd", &["p1"])];
+        for (said, nodes, class) in [
+            ("the pharmacy", ["p2"], PlaceClass::Room),
+            ("the old pharmacy", ["ns"], PlaceClass::Plain),
+            ("café süd", ["p1"], PlaceClass::Room),
+        ] {
+            let found = find(&location, said).unwrap();
+            assert_eq!(found.nodes, nodes.map(node), "{said}");
+            assert!(found.exact && (found.class == class || said.contains("old")), "{said}: {found:?}");
+        }
+        assert_eq!(find(&location, "ward 2").unwrap().nodes, [node("p2")]);
+    }
 
     fn ids(map: &str, name: &str) -> Vec<String> {
         let location = socrates_maps::shipped::load(map).unwrap();

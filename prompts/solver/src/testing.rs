@@ -37,6 +37,7 @@ pub(crate) fn map(
         grid: Grid { width, height, resolution_m: 0.1, origin: Pose::new(0.0, 0.0, 0.0), cells },
         graph: SceneGraph::new(nodes.collect(), edges.iter().map(edge).collect()),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

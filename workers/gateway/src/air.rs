@@ -182,6 +182,7 @@ async fn location(bus: &Arc<dyn Bus>, meta: &LiveMeta, watch: Option<&Watch>) ->
         description: String::new(),
         graph: SceneGraph::default(),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -220,6 +220,7 @@ pub(crate) fn floor(
                 .collect(),
         ),
         doors: vec![],
+        names: Vec::new(),
         warnings: vec![],
     }
 }

@@ -37,6 +37,7 @@ fn map() -> Location {
         grid: Grid { width: 0, height: 0, resolution_m: 0.1, origin: Pose::new(0.0, 0.0, 0.0), cells: Vec::new() },
         graph: SceneGraph::new(nodes, edges.to_vec()),
         doors: Vec::new(),
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use socrates_app::map;
 use socrates_app::output::Printer;
+use socrates_app::{build, graphs, map};
 
 use super::{Outcome, done};
 
@@ -58,6 +58,57 @@ enum MapVerb {
         /// A shipped name, a folder, or a map without a scene graph, which is annotated.
         second: String,
     },
+    /// Build a floor with the rooms, corridors and elevators that a brief asks for.
+    Build {
+        /// A brief (a .toml file), or a sentence: "a hospital with two wards, a lobby with two elevators".
+        what: String,
+        /// What the brief leaves open is drawn by this seed; the same brief and seed give the same files.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Folder to write. One that holds anything is left as it is.
+        #[arg(long, short)]
+        out: PathBuf,
+    },
+    /// Write a location in a format of others, with a list of what that format cannot hold beside it.
+    Export {
+        /// A shipped name or a folder.
+        location: String,
+        /// Format: node-link (SocRATES, networkx), nav2-route (GeoJSON of Nav2's route server), rmf (building.yaml of Open-RMF).
+        #[arg(long, value_name = "FORMAT")]
+        to: String,
+        /// File to write; named by location and format by default.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+    },
+    /// Make a location folder from a file of another tool, with a list of what a location cannot hold in it.
+    Import {
+        /// The file.
+        file: PathBuf,
+        /// Format: node-link, nav2-route or rmf.
+        #[arg(long, value_name = "FORMAT")]
+        from: String,
+        /// The map on which the graph was drawn: a map file or a folder with one; a building of rmf brings its own.
+        #[arg(long)]
+        map: Option<PathBuf>,
+        /// Level of a building that has several.
+        #[arg(long)]
+        level: Option<String>,
+        /// Folder to write. One that has a scene graph is left as it is.
+        #[arg(long, short)]
+        out: PathBuf,
+    },
+    /// Give an area a name that requests may use, such as `pharmacy` for a room.
+    Name {
+        /// A folder; a shipped name with `--out`.
+        location: String,
+        /// A node of the area (`map draw` shows the ids): its whole room where it lies in one; several joined by commas.
+        area: String,
+        /// The name, without an article.
+        name: String,
+        /// Folder for the named copy; by default the name is written into the location's own location.toml.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+    },
     /// Make a location folder from a floor plan (`plan.toml`), or from a plan drawn by a seed.
     Generate {
         /// The floor plan.
@@ -90,6 +141,18 @@ impl Map {
                 };
                 map::annotate(talk, map, &options)
             }
+            MapVerb::Build { what, seed, out } => build::build(talk, what, *seed, out),
+            MapVerb::Export { location, to, out } => graphs::export(talk, location, to, out.as_deref()),
+            MapVerb::Import { file, from, map, level, out } => {
+                let options = graphs::ImportOptions {
+                    from: from.clone(),
+                    map: map.clone(),
+                    level: level.clone(),
+                    out: out.clone(),
+                };
+                graphs::import(talk, file, &options)
+            }
+            MapVerb::Name { location, area, name, out } => graphs::name(talk, location, area, name, out.as_deref()),
             MapVerb::Score { first, second } => map::score(talk, first, second),
             MapVerb::Generate { plan, random, kind, out } => match (plan, random, kind, out) {
                 (_, Some(seed), Some(kind), out) => map::random(talk, *seed, kind, out.as_deref()),

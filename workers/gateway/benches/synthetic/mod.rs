@@ -74,6 +74,7 @@ fn scene(agents: u32) -> Scene {
             grid,
             graph: SceneGraph::default(),
             doors: Vec::new(),
+            names: Vec::new(),
             warnings: Vec::new(),
         },
         doors: Vec::new(),

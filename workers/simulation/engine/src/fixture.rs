@@ -58,6 +58,7 @@ pub(crate) fn location(grid: Grid, nodes: &[(&str, f64, f64)], edges: &[(&str, &
         grid,
         graph: SceneGraph::new(nodes, edges),
         doors: vec![],
+        names: Vec::new(),
         warnings: vec![],
     }
 }

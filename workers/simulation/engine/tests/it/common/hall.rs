@@ -99,6 +99,7 @@ pub fn crowd(n: u32, secs: f64) -> Setup {
             grid: grid(side, &scene.segments),
             graph: SceneGraph::new(nodes, edges),
             doors: vec![],
+            names: Vec::new(),
             warnings: vec![],
         },
         proposal: Proposal {
