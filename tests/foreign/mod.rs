@@ -5,6 +5,7 @@ mod bags;
 mod consoles;
 mod deploy;
 mod drivers;
+mod editors;
 mod live;
 mod looks;
 pub(crate) mod models;

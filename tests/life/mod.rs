@@ -19,6 +19,7 @@ mod keys;
 mod leaving;
 mod libraries;
 mod live;
+mod map_edit;
 mod no_ways;
 mod observing;
 mod originals;
