@@ -32,7 +32,8 @@ fn an_editor_that_is_killed_has_every_edit_again_and_saves_the_shipped_file() {
         // A second one is refused with who holds the folder; one that only looks is not.
         if round == 0 {
             let second = socrates(folder.path(), "second", &["map", "edit", "mine"]);
-            let holder = format!("is being edited by process {}, with a page at http://{}/", editor.id(), editor.address);
+            let holder =
+                format!("is being edited by process {}, with a page at http://{}/", editor.id(), editor.address);
             assert!(second.code == 2 && second.err.contains(&holder), "{}", second.err);
             assert!(second.err.contains("--read-only"), "{}", second.err);
             let looks = Editor::start(PROGRAM, folder.path(), "looks", &["mine", "--read-only"]).unwrap();

@@ -29,5 +29,5 @@ pub use history::{History, Step};
 pub use opening::{Opening, elevator, inside_of, opening};
 pub use proposal::Proposal;
 pub use sketch::{Door, Edge, Node, Sketch, Spot};
-pub use tile::{TILE_PX, levels, tile};
+pub use tile::{TILE_PX, levels, seen, tile};
 pub use way::{Line, NoWay, Way, line, way};

@@ -35,9 +35,22 @@ impl Edit {
             Self::Describe { .. } => "changed the description".to_owned(),
             Self::Several(edits) => match edits.as_slice() {
                 [first, second] => format!("{}, {}", first.said(), second.said()),
-                _ => format!("did {} things at once", edits.len()),
+                _ => together(edits),
             },
             Self::Replace(sketch) => format!("took over {} nodes and {} edges", sketch.nodes.len(), sketch.edges.len()),
         }
     }
+}
+
+/// Many edits at once, counted.
+fn together(edits: &[Edit]) -> String {
+    let count = |fits: fn(&Edit) -> bool| edits.iter().filter(|edit| fits(edit)).count();
+    let added = [
+        (count(|edit| matches!(edit, Edit::AddNode { .. })), "nodes"),
+        (count(|edit| matches!(edit, Edit::AddEdge { .. })), "edges"),
+        (count(|edit| matches!(edit, Edit::AddDoor(_))), "doors"),
+    ];
+    let words: Vec<String> =
+        added.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+    if words.is_empty() { format!("did {} things at once", edits.len()) } else { format!("added {}", words.join(", ")) }
 }

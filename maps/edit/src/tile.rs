@@ -18,6 +18,20 @@ pub fn levels(grid: &Grid) -> u32 {
     tiles.next_power_of_two().trailing_zeros() + 1
 }
 
+/// The part of the image on which anything is known: left, top, right and bottom, pixels; all of it where nothing is.
+#[must_use]
+pub fn seen(grid: &Grid) -> [usize; 4] {
+    let known = |cell: &Cell| *cell != Cell::Unknown;
+    let (mut columns, mut rows) = ((grid.width, 0), (grid.height, 0));
+    for (row, line) in grid.cells.chunks_exact(grid.width.max(1)).enumerate() {
+        if let Some((first, last)) = line.iter().position(known).zip(line.iter().rposition(known)) {
+            columns = (columns.0.min(first), columns.1.max(last + 1));
+            rows = (rows.0.min(row), rows.1.max(row + 1));
+        }
+    }
+    if columns.1 == 0 { [0, 0, grid.width, grid.height] } else { [columns.0, rows.0, columns.1, rows.1] }
+}
+
 /// A tile as a PNG: `column` and `row` count tiles from the top left; those at the right and lower edge are cut. None where there is none.
 ///
 /// A pixel that stands for several cells is a wall where one of them is: a thin wall stays in sight.

@@ -1,10 +1,11 @@
 //! Drawing on the shipped maps: the same files as the shipped ones, undone and done again, checked, and helped by geometry.
+#![cfg(test)]
 
 use std::collections::BTreeSet;
 
 use socrates_edit::{
     Door, Edit, EditError, History, Level, NoWay, Proposal, Sketch, Spot, Step, Subject, check, elevator, inside_of,
-    levels, line, opening, tile, way,
+    levels, line, opening, seen, tile, way,
 };
 use socrates_maps::{EXTRA, GRAPH, shipped};
 use socrates_model::{Cell, DoorKind, DoorOpens, Grid, Location, NodeId, Pose};
@@ -308,7 +309,11 @@ fn a_map_of_20_000_pixels_comes_in_tiles_in_which_a_thin_wall_is_not_lost() {
     let mut cells = vec![Cell::Free; width * height];
     (0..height).for_each(|row| cells[row * width + 12_345] = Cell::Occupied);
     let grid = Grid { width, height, resolution_m: 0.05, origin: Pose::new(0.0, 0.0, 0.0), cells };
-    assert_eq!(levels(&grid), 7);
+    assert_eq!((levels(&grid), seen(&grid)), (7, [0, 0, width, height]));
+    let mut little = Grid { width: 4, height: 3, cells: vec![Cell::Unknown; 12], ..grid.clone() };
+    assert_eq!(seen(&little), [0, 0, 4, 3]);
+    little.cells[5] = Cell::Free;
+    assert_eq!(seen(&little), [1, 1, 2, 2]);
     let whole = tile(&grid, 6, 0, 0).unwrap();
     let decoded = |bytes: &[u8]| {
         let side = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());

@@ -49,8 +49,8 @@ pub(super) struct Board {
     journal: Option<Journal>,
     /// The drawn files as they were when they were read or written last.
     disk: Disk,
-    /// What they hold.
-    saved: Sketch,
+    /// What they hold; none where a copy is begun that is not written yet.
+    saved: Option<Sketch>,
     /// What the page says at the beginning.
     pub(super) notes: Vec<String>,
 }
@@ -62,20 +62,15 @@ impl Board {
     /// A [`Complaint`] where files or journal cannot be read.
     pub(super) fn lay(site: Site, read_only: bool) -> Result<(Self, Location), Complaint> {
         let draft = site.draft()?;
-        let (base, disk) = (Sketch::of(&draft.location), site.disk());
+        let (base, disk) = (Sketch::of(&draft.location), site.disk.clone());
         let mut notes: Vec<String> = draft.location.warnings.clone();
         if !draft.faults.is_empty() {
             notes.push("Some of the files was not taken over as it is; saving writes them without it:".to_owned());
             notes.extend(draft.faults.iter().map(Fault::to_string));
         }
-        let mut board = Self {
-            history: History::new(base.clone()),
-            journal: None,
-            disk: disk.clone(),
-            saved: base.clone(),
-            notes,
-            site,
-        };
+        let saved = site.is_saved().then(|| base.clone());
+        let mut board =
+            Self { history: History::new(base.clone()), journal: None, disk: disk.clone(), saved, notes, site };
         if !read_only {
             let work = board.site.folder.join(WORK);
             let opened = Journal::open(&work, board.site.map_digest(), base, disk)?;
@@ -92,7 +87,7 @@ impl Board {
     fn go_on(&mut self, opened: Opened) {
         let Opened { journal, history, disk, steps } = opened;
         if steps > 0 {
-            let note = if history.sketch() == &self.saved {
+            let note = if self.saved.as_ref() == Some(history.sketch()) {
                 format!(
                     "Went on with the journal: {} can be undone, and all is saved.",
                     plural(history.undoable(), "edit")
@@ -131,7 +126,7 @@ impl Board {
         json!({
             "rev": self.revision(), "sketch": sketch, "classes": classes, "said": said,
             "undo": self.history.undoable(), "redo": self.history.redoable(),
-            "dirty": sketch != &self.saved, "read_only": self.journal.is_none(),
+            "dirty": self.saved.as_ref() != Some(sketch), "read_only": self.journal.is_none(),
         })
     }
 
@@ -198,7 +193,7 @@ impl Board {
         let kept = self.site.keep_theirs(&changed)?;
         let written = self.site.write(&self.sketch().files(&map.grid))?;
         self.disk = self.site.disk_now()?;
-        self.saved = self.sketch().clone();
+        self.saved = Some(self.sketch().clone());
         if let Some(journal) = self.journal.as_mut() {
             journal.saved(&self.disk)?;
         }
@@ -215,7 +210,7 @@ impl Board {
         let (draft, disk) = self.site.again()?;
         let theirs = Sketch::of(&draft.location);
         let state = self.act(rev, Edit::Replace(theirs.clone()))?;
-        (self.disk, self.saved) = (disk, theirs);
+        (self.disk, self.saved) = (disk, Some(theirs));
         if let Some(journal) = self.journal.as_mut() {
             journal.saved(&self.disk)?;
         }

@@ -13,7 +13,7 @@ use axum::routing::{get, post};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
-use socrates_edit::{Edit, Spot, TILE_PX, elevator, inside_of, levels, line, opening, tile, way};
+use socrates_edit::{Edit, Spot, TILE_PX, elevator, inside_of, levels, line, opening, seen, tile, way};
 use socrates_gateway::guard::Rules;
 use socrates_maps::Ground;
 use socrates_model::{Location, NodeId, PlaceClass};
@@ -153,7 +153,7 @@ async fn map(State(shared): State<Arc<Shared>>) -> Answer {
         "name": shared.map.name, "folder": board.folder(), "notes": board.notes,
         "width": grid.width, "height": grid.height, "resolution_m": grid.resolution_m,
         "origin": [grid.origin.x, grid.origin.y, grid.origin.yaw],
-        "tile_px": TILE_PX, "levels": levels(grid), "kinds": KINDS, "classes": classes,
+        "seen": seen(grid), "tile_px": TILE_PX, "levels": levels(grid), "kinds": KINDS, "classes": classes,
     })))
 }
 

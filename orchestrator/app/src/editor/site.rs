@@ -34,6 +34,8 @@ pub(crate) struct Site {
     pub(crate) map: BTreeMap<String, Vec<u8>>,
     /// The drawn files as they were read; without those that are not there.
     drawn: BTreeMap<String, Vec<u8>>,
+    /// The drawn files of the folder itself: none of them where a copy is begun.
+    pub(crate) disk: Disk,
     /// Whether the folder holds a plan that no longer makes what is drawn.
     pub(crate) has_plan: bool,
 }
@@ -66,13 +68,17 @@ impl Site {
         };
         let is_map = |file: &String| !DRAWN.contains(&file.as_str()) && file != PLAN;
         let (map, mut drawn): (BTreeMap<_, _>, BTreeMap<_, _>) = files.into_iter().partition(|(file, _)| is_map(file));
-        if folder.join(MAP).is_file() {
+        let there = drawn_in(&folder)?;
+        let has_map = folder.join(MAP).is_file();
+        if has_map {
             same_map(&folder, &map)?;
-            drawn = drawn_in(&folder)?;
         }
+        let disk = digests(&there);
+        // A copy that was begun is gone on with.
+        drawn = if has_map || !there.is_empty() { there } else { drawn };
         drawn.remove(PLAN);
         let has_plan = folder.join(PLAN).is_file();
-        Ok(Self { folder, name, map, drawn, has_plan })
+        Ok(Self { folder, name, map, drawn, disk, has_plan })
     }
 
     /// What the files hold.
@@ -96,9 +102,9 @@ impl Site {
         Ok((now.draft()?, disk))
     }
 
-    /// The digests of the drawn files as they were read.
-    pub(crate) fn disk(&self) -> Disk {
-        digests(&self.drawn)
+    /// Whether the folder holds what was read, or nothing was.
+    pub(crate) fn is_saved(&self) -> bool {
+        digests(&self.drawn) == self.disk
     }
 
     /// The digest of the map on which is drawn.

@@ -42,7 +42,8 @@ async fn open(given: &str, out: Option<&Path>, read_only: bool) -> SocketAddr {
 async fn asked(at: SocketAddr, line: &str, head: &str, body: &str) -> (u16, String, Vec<u8>) {
     let mut stream = TcpStream::connect(at).await.unwrap();
     let length = body.len();
-    let text = format!("{line} HTTP/1.1\r\nhost: {at}\r\nconnection: close\r\ncontent-length: {length}\r\n{head}\r\n{body}");
+    let text =
+        format!("{line} HTTP/1.1\r\nhost: {at}\r\nconnection: close\r\ncontent-length: {length}\r\n{head}\r\n{body}");
     stream.write_all(text.as_bytes()).await.unwrap();
     let mut answer = Vec::new();
     drop(stream.read_to_end(&mut answer).await);
@@ -78,9 +79,15 @@ async fn what_is_drawn_is_checked_undone_saved_and_the_same_file_again() {
     let (_, found) = page(at, "GET /findings", Value::Null).await;
     assert_eq!(found["findings"], json!([]));
     let (status, state) = draws(at, json!({"move_nodes": {"nodes": [["h0", [1, 1]]]}})).await;
-    assert_eq!((status, &state["dirty"], &state["undo"], &state["said"]), (200, &json!(true), &json!(1), &json!("moved node h0")));
+    assert_eq!(
+        (status, &state["dirty"], &state["undo"], &state["said"]),
+        (200, &json!(true), &json!(1), &json!("moved node h0"))
+    );
     let (_, found) = page(at, "GET /findings", Value::Null).await;
-    assert_eq!((&found["findings"][0]["subject"], &found["findings"][0]["at"]), (&json!({"node": "h0"}), &json!([1.0, 1.0])));
+    assert_eq!(
+        (&found["findings"][0]["subject"], &found["findings"][0]["at"]),
+        (&json!({"node": "h0"}), &json!([1.0, 1.0]))
+    );
     // An edit of a sketch that is another one by now is not done, and the page is told how it stands.
     let (status, stale) = page(at, "POST /edit", json!({"rev": 0, "edit": {"describe": {"text": "x"}}})).await;
     assert_eq!((status, &stale["error"]["code"], &stale["state"]["undo"]), (409, &json!("stale"), &json!(1)));
@@ -89,7 +96,10 @@ async fn what_is_drawn_is_checked_undone_saved_and_the_same_file_again() {
     let (status, wrong) = draws(at, json!({"rename_node": {"id": "h0", "to": "h 1"}})).await;
     assert!(status == 400, "{wrong}");
     let (_, state) = page(at, "POST /undo", json!({"rev": rev(at).await})).await;
-    assert_eq!((&state["dirty"], &state["redo"], &state["said"]), (&json!(false), &json!(1), &json!("took back: moved node h0")));
+    assert_eq!(
+        (&state["dirty"], &state["redo"], &state["said"]),
+        (&json!(false), &json!(1), &json!("took back: moved node h0"))
+    );
     assert_eq!(page(at, "POST /undo", json!({"rev": rev(at).await})).await.0, 422);
     let (_, saved) = page(at, "POST /save", json!({"rev": rev(at).await})).await;
     assert!(saved["said"].as_str().unwrap().contains("scene_graph.json, location.toml in "), "{saved}");
@@ -107,7 +117,10 @@ async fn a_file_that_another_program_changed_is_not_overwritten_unless_that_is_w
     let theirs = std::fs::read_to_string(mine.join("location.toml")).unwrap().replace("One floor", "Their floor");
     std::fs::write(mine.join("location.toml"), &theirs).unwrap();
     let (status, told) = page(at, "POST /save", json!({"rev": rev(at).await})).await;
-    assert_eq!((status, &told["error"]["code"], &told["error"]["files"]), (409, &json!("changed"), &json!(["location.toml"])));
+    assert_eq!(
+        (status, &told["error"]["code"], &told["error"]["files"]),
+        (409, &json!("changed"), &json!(["location.toml"]))
+    );
     assert_eq!(std::fs::read_to_string(mine.join("location.toml")).unwrap(), theirs);
     // Theirs is taken as an edit: undoing it brings mine back.
     let (_, state) = page(at, "POST /theirs", json!({"rev": rev(at).await})).await;
@@ -158,14 +171,19 @@ async fn openings_elevators_ways_and_the_proposal_are_worked_out_here() {
     let mine = office(folder.path(), &WHOLE);
     let at = open(&mine.display().to_string(), None, false).await;
     let (_, door) = page(at, "POST /opening", json!({"near": [262, 140]})).await;
-    assert_eq!((&door["inside"], &door["from"], &door["to"]), (&json!(["m1a", "m1b", "m1c"]), &json!([256.0, 141.0]), &json!([266.0, 141.0])));
+    assert_eq!(
+        (&door["inside"], &door["from"], &door["to"]),
+        (&json!(["m1a", "m1b", "m1c"]), &json!([256.0, 141.0]), &json!([266.0, 141.0]))
+    );
     assert_eq!(page(at, "POST /opening", json!({"near": [1, 1]})).await.0, 422);
     let (_, found) = page(at, "POST /way", json!({"from": "h0", "to": "m1a"})).await;
     assert_eq!((&found["walk"]["arrives"], &found["way"]["nodes"][0]), (&json!(true), &json!("h0")));
     assert_eq!(page(at, "POST /way", json!({"from": "h0", "to": "zz"})).await.0, 422);
     let raw = folder.path().join("raw");
     std::fs::create_dir_all(&raw).unwrap();
-    ["map.yaml", "map.png"].iter().for_each(|file| drop(std::fs::copy(mine.join(file), raw.join(file)).unwrap()));
+    for file in ["map.yaml", "map.png"] {
+        std::fs::copy(mine.join(file), raw.join(file)).unwrap();
+    }
     let at = open(&raw.display().to_string(), None, false).await;
     let (_, state) = page(at, "GET /state", Value::Null).await;
     assert_eq!(state["sketch"]["nodes"], json!([]), "a map without a scene graph begins empty");
@@ -206,7 +224,10 @@ fn a_graph_that_no_reader_takes_is_opened_with_what_is_wrong_with_it() {
     let folder = tempfile::tempdir().unwrap();
     let mine = office(folder.path(), &WHOLE);
     let graph = std::fs::read_to_string(mine.join("scene_graph.json")).unwrap();
-    let broken = graph.replace("[14, 128]", "[1, 1]").replace("[48, 128]", "[4800, 128]").replace("\"target\": \"h2\"", "\"target\": \"gone\"");
+    let broken = graph
+        .replace("[14, 128]", "[1, 1]")
+        .replace("[48, 128]", "[4800, 128]")
+        .replace("\"target\": \"h2\"", "\"target\": \"gone\"");
     std::fs::write(mine.join("scene_graph.json"), &broken).unwrap();
     let (board, _) = Board::lay(Site::of(&mine.display().to_string(), None).unwrap(), true).unwrap();
     assert!(socrates_maps::load(&mine).is_err());

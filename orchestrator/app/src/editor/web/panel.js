@@ -73,7 +73,7 @@ function showTools() {
   const kinds = map.kinds.map((kind, index) => {
     const dot = element("i");
     dot.style.background = COLORS[map.classes[kind]] || COLORS.plain;
-    return element("button", { type: "button", class: "kind", id: `kind-${index + 1}`, "aria-pressed": String($("kind").value === kind), onclick: () => setKind(kind) }, dot, element("span", {}, kind), index < 9 ? element("kbd", {}, String(index + 1)) : "");
+    return element("button", { type: "button", class: "kind", id: `kind-${index + 1}`, "aria-pressed": String($("kind").value === kind), onclick: () => setKind(kind) }, dot, element("span", { title: kind }, kind[0] + kind.slice(1).toLowerCase()), index < 9 ? element("kbd", {}, String(index + 1)) : "");
   });
   $("tools").replaceChildren(...tools, element("h2", {}, "Type"), ...kinds);
   if (focused && /^(tool|kind)-/.test(focused)) $(focused)?.focus();
@@ -176,7 +176,8 @@ const subject = (finding) => { const [[kind, id]] = typeof finding.subject === "
 
 function showFindings() {
   const count = (level) => findings.filter((one) => one.level === level).length, refused = count("refused");
-  $("findings-head").textContent = findings.length ? `Findings (${findings.length}${refused ? `, ${refused} refuse the location` : ""})` : "Findings: none";
+  const refuse = refused ? ` (${refused} ${refused === 1 ? "refuses" : "refuse"} the location)` : "";
+  $("findings-head").textContent = findings.length ? `Findings: ${findings.length}${refuse}` : "Findings: none";
   $("findings").replaceChildren(...findings.slice(0, SHOWN_FINDINGS).map((finding, index) => {
     const [kind, id] = subject(finding), name = kind === "whole" ? "" : `${kind} ${Array.isArray(id) ? id.join(" – ") : id}: `;
     const code = finding.code ? element("span", { class: "quiet" }, ` ${finding.code}`) : "";
@@ -225,7 +226,7 @@ function showNotes() {
   if (map.notes.length) $("notes").append(element("button", { type: "button", onclick: () => { $("notes").hidden = true; } }, "Read"));
 }
 
-const KEYS = [["V N E D L W H", "tools: select, node, edge, door, elevator, way, move"], ["1 – 9", "type: of what is chosen, and of what is drawn next"], ["Arrow keys", "move what is chosen by 1 pixel, with Shift by 10; nothing chosen: move the cursor"], ["Enter", "do at the cursor what a click does"], [". and ,", "choose the next and the previous node"], ["Delete", "delete; with Shift the neighbors of a node are joined"], ["Ctrl + Z, Ctrl + Shift + Z", "undo, redo"], ["Ctrl + A, Esc", "choose all; choose nothing, break off"], ["Ctrl + S", "save"], ["Wheel, + and –", "zoom"], ["Space and drag", "move the map"], ["F", "fit the map into the window"], ["Shift while drawing", "do not align with other nodes"], ["Alt while drawing", "hundredths of a pixel instead of whole ones"], ["Shift and click", "choose one more"]];
+const KEYS = [["V N E D L W H", "tools: select, node, edge, door, elevator, way, move"], ["1 – 9", "type: of what is chosen, and of what is drawn next"], ["Arrow keys", "move what is chosen by 1 pixel, with Shift by 10; nothing chosen: move the cursor"], ["Enter", "do at the cursor what a click does"], [". and ,", "choose the next and the previous node, edge, door"], ["Delete", "delete; with Shift the neighbors of a node are joined"], ["Ctrl + Z, Ctrl + Shift + Z", "undo, redo"], ["Ctrl + A, Esc", "choose all; choose nothing, break off"], ["Ctrl + S", "save"], ["Wheel, + and –", "zoom"], ["Space and drag", "move the map"], ["F", "fit the map into the window"], ["Shift while drawing", "do not align with other nodes"], ["Alt while drawing", "hundredths of a pixel instead of whole ones"], ["Shift and click", "choose one more"]];
 
 function showHelp() {
   const list = element("dl", {}, ...KEYS.flatMap(([key, words]) => [element("dt", {}, element("kbd", {}, key)), element("dd", {}, words)]));

@@ -251,14 +251,17 @@ function arrow(dx, dy) {
   rubber(() => {});
 }
 
+// Chooses the next thing in the order of the files: nodes, edges, doors.
 function step(by) {
-  const nodes = now.sketch.nodes, [current] = choice.nodes, place = nodes.findIndex((node) => node.id === current);
-  if (!nodes.length) return;
-  const next = nodes[(place + by + nodes.length + (place < 0 && by < 0 ? 1 : 0)) % nodes.length];
-  choose("nodes", next.id);
-  const [x, y] = toScreen(next.at), [w, h] = stageSize();
-  if (x < 0 || y < 0 || x > w || y > h - 30) lookAt(next.at);
-  say(`${next.id}, ${next.kind}`);
+  const { nodes, edges, doors } = now.sketch;
+  const all = [...nodes.map((node) => ["nodes", node.id, node.at, `${node.id}, ${node.kind}`]), ...edges.map((edge) => { const [a, b] = [nodeOf(edge.from).at, nodeOf(edge.to).at]; return ["edges", edgeKey(edge), [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2], `edge ${edge.from} – ${edge.to}, ${edge.kind}`]; }), ...doors.map((door) => ["doors", door.id, [(door.from[0] + door.to[0]) / 2, (door.from[1] + door.to[1]) / 2], `door ${door.id}`])];
+  if (!all.length) return;
+  const place = all.findIndex(([kind, id]) => choice[kind].has(id));
+  const [kind, id, spot, words] = all[(place + by + all.length + (place < 0 && by < 0 ? 1 : 0)) % all.length];
+  choose(kind, id);
+  const [x, y] = toScreen(spot), [w, h] = stageSize();
+  if (x < 0 || y < 0 || x > w || y > h - 30) lookAt(spot);
+  say(words);
 }
 
 function enter(event) {

@@ -41,10 +41,10 @@ function meters([x, y]) {
 }
 
 function fit() {
-  const [w, h] = stageSize();
-  view.scale = Math.min((w - 24) / map.width, (h - 60) / map.height);
-  view.x = map.width / 2 - w / 2 / view.scale;
-  view.y = map.height / 2 - (h - 30) / 2 / view.scale;
+  const [w, h] = stageSize(), [left, top, right, bottom] = map.seen;
+  view.scale = Math.min((w - 24) / (right - left), (h - 60) / (bottom - top), 64);
+  view.x = (left + right) / 2 - w / 2 / view.scale;
+  view.y = (top + bottom) / 2 - (h - 30) / 2 / view.scale;
   redraw();
 }
 
@@ -157,15 +157,13 @@ function drawDoors() {
 }
 
 function drawNodes() {
-  const held = document.activeElement?.dataset?.node;
   layers.nodes.replaceChildren();
   const labels = view.scale >= LABELS_FROM || now.sketch.nodes.length < 60;
   for (const node of now.sketch.nodes) {
     const [x, y] = toScreen(at(node)), isChosen = choice.nodes.has(node.id);
-    const dot = made("circle", { class: isChosen ? "node chosen" : "node", cx: x, cy: y, r: NODE_R, fill: colorOf(node.kind), "data-node": node.id, tabindex: -1, role: "img", "aria-label": `${node.id}, ${node.kind}` }, layers.nodes);
+    const dot = made("circle", { class: isChosen ? "node chosen" : "node", cx: x, cy: y, r: NODE_R, fill: colorOf(node.kind), "data-node": node.id, role: "img", "aria-label": `${node.id}, ${node.kind}` }, layers.nodes);
     made("title", {}, dot).textContent = `${node.id}: ${node.kind}`;
     if (labels || isChosen) made("text", { class: "label", x: x + 8, y: y - 6 }, layers.nodes).textContent = node.id;
-    if (held === node.id) dot.focus();
   }
 }
 
