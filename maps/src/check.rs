@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use socrates_model::{AreaName, Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Where};
 
+use crate::finding::{About, Finding};
 use crate::ground::Ground;
 use crate::openings::Enclosures;
 use crate::read::{EXTRA, GRAPH, edge_at};
@@ -26,31 +27,37 @@ pub(crate) const ORIGIN_MAX: f64 = 1e7;
 /// are not empty, doors that are sensible and whose inside nodes exist.
 #[must_use]
 pub fn check(location: &Location) -> Vec<Fault> {
-    let mut faults = Vec::new();
-    if !measures(&location.grid, &mut faults) {
+    findings(location).into_iter().map(|finding| finding.fault).collect()
+}
+
+/// The same with what each problem is about and where it is.
+#[must_use]
+pub fn findings(location: &Location) -> Vec<Finding> {
+    let mut found = Vec::new();
+    if !measures(&location.grid, &mut found) {
         // Everything below walks over the cells between two points.
-        return faults;
+        return found;
     }
-    grid_problems(&location.grid, &mut faults);
-    let on_wall = node_problems(location, &mut faults);
-    edge_problems(location, &on_wall, &mut faults);
-    part_problems(location, &mut faults);
+    grid_problems(&location.grid, &mut found);
+    let on_wall = node_problems(location, &mut found);
+    edge_problems(location, &on_wall, &mut found);
+    part_problems(location, &mut found);
     for (index, door) in location.doors.iter().enumerate() {
-        door_problems(location, index, door, &mut faults);
+        door_problems(location, index, door, &mut found);
     }
     for (index, area) in location.names.iter().enumerate() {
-        name_problems(location, index, area, &mut faults);
+        name_problems(location, index, area, &mut found);
     }
-    if faults.iter().all(Fault::is_soft) {
-        open_plan(location, &mut faults);
+    if found.iter().all(|finding| finding.fault.is_soft()) {
+        open_plan(location, &mut found);
     }
-    faults
+    found
 }
 
 /// Whether the grid lies somewhere, in cells of some size: bounds as for `map.yaml`.
-fn measures(grid: &Grid, faults: &mut Vec<Fault>) -> bool {
-    let before = faults.len();
-    let mut fault = |message: String| faults.push(Fault::new(FaultCode::MValue, "grid", message));
+fn measures(grid: &Grid, found: &mut Vec<Finding>) -> bool {
+    let before = found.len();
+    let mut fault = |message: String| found.push(Finding::whole(FaultCode::MValue, "grid", message));
     if !CELL_M.contains(&grid.resolution_m) {
         let (least, most) = (CELL_M.start(), CELL_M.end());
         fault(format!("`resolution_m` is {:e}; allowed: {least} to {most} m", grid.resolution_m));
@@ -60,26 +67,29 @@ fn measures(grid: &Grid, faults: &mut Vec<Fault>) -> bool {
             fault(format!("`origin.{key}` is {value:e}; allowed: -{ORIGIN_MAX} to {ORIGIN_MAX}"));
         }
     }
-    faults.len() == before
+    found.len() == before
 }
 
-fn grid_problems(grid: &Grid, faults: &mut Vec<Fault>) {
+fn grid_problems(grid: &Grid, found: &mut Vec<Finding>) {
     if grid.width.saturating_mul(grid.height) != grid.cells.len() {
         let message = format!("the grid has {} cells for {} by {}", grid.cells.len(), grid.width, grid.height);
-        faults.push(Fault::new(FaultCode::MImage, "grid", message));
+        found.push(Finding::whole(FaultCode::MImage, "grid", message));
     }
     if !grid.cells.contains(&Cell::Free) {
-        let message = "no cell of the map is free; check `negate` and the thresholds";
-        faults.push(Fault::new(FaultCode::MImage, "grid", message));
+        let message = "no cell of the map is free; check `negate` and the thresholds".to_owned();
+        found.push(Finding::whole(FaultCode::MImage, "grid", message));
     }
 }
 
-fn node_problems<'a>(location: &'a Location, faults: &mut Vec<Fault>) -> BTreeSet<&'a NodeId> {
+fn node_problems<'a>(location: &'a Location, found: &mut Vec<Finding>) -> BTreeSet<&'a NodeId> {
     let mut on_wall = BTreeSet::new();
     for node in location.graph.nodes() {
-        let at = Where::file(GRAPH).node(node.id.clone());
+        let mut fault = |code: FaultCode, message: String| {
+            let place = Where::file(GRAPH).node(node.id.clone());
+            found.push(Finding::new(About::Node(node.id.clone()), Some(node.at), Fault::new(code, place, message)));
+        };
         if !location.grid.is_free(&node.at) {
-            let found = location.grid.cell_of(&node.at).map_or("outside the map", |(column, row)| {
+            let stands = location.grid.cell_of(&node.at).map_or("outside the map", |(column, row)| {
                 match location.grid.at(column, row) {
                     Cell::Occupied => "in a wall",
                     Cell::Unknown => "on unknown floor",
@@ -88,33 +98,37 @@ fn node_problems<'a>(location: &'a Location, faults: &mut Vec<Fault>) -> BTreeSe
             });
             let (px, py) = location.grid.pixel_from_world(&node.at);
             let message = format!(
-                "stands {found} at ({:.2}, {:.2}) m, pixel ({px:.0}, {py:.0}); move it to free floor",
+                "stands {stands} at ({:.2}, {:.2}) m, pixel ({px:.0}, {py:.0}); move it to free floor",
                 node.at.x, node.at.y
             );
-            faults.push(Fault::new(FaultCode::MWall, &at, message));
+            fault(FaultCode::MWall, message);
             on_wall.insert(&node.id);
         }
         if node.kind.trim().is_empty() {
-            faults.push(Fault::new(FaultCode::MType, at, "the type is empty; say what kind of place it is"));
+            fault(FaultCode::MType, "the type is empty; say what kind of place it is".to_owned());
         }
     }
     on_wall
 }
 
-fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, faults: &mut Vec<Fault>) {
+fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, found: &mut Vec<Finding>) {
     let ground = Ground::of(&location.grid);
     let sight = ground.sight();
     for edge in location.graph.edges() {
-        let at = edge_at(edge);
+        let mut fault = |code: FaultCode, at: Option<Point>, message: String| {
+            let about = About::Edge(edge.from.clone(), edge.to.clone());
+            found.push(Finding::new(about, at, Fault::new(code, edge_at(edge), message)));
+        };
+        let ends = location.graph.node(&edge.from).zip(location.graph.node(&edge.to));
         if edge.kind.trim().is_empty() {
-            faults.push(Fault::new(FaultCode::MType, &at, "the type is empty; say what kind of way it is"));
+            let half = ends.map(|(a, b)| middle(&a.at, &b.at));
+            fault(FaultCode::MType, half, "the type is empty; say what kind of way it is".to_owned());
         }
         if on_wall.contains(&edge.from) || on_wall.contains(&edge.to) {
             continue;
         }
         let Some(points) = location.graph.edge_points(&edge.from, &edge.to) else {
-            let message = "joins a node that does not exist";
-            faults.push(Fault::new(FaultCode::MId, at, message));
+            fault(FaultCode::MId, None, "joins a node that does not exist".to_owned());
             continue;
         };
         let blocked = points.windows(2).find_map(|pair| match pair {
@@ -126,26 +140,33 @@ fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, faults: &mut 
                 "crosses a wall between ({:.2}, {:.2}) and ({:.2}, {:.2}) m; open the wall in the image or remove the edge",
                 a.x, a.y, b.x, b.y
             );
-            faults.push(Fault::new(FaultCode::GFree, at, message));
+            fault(FaultCode::GFree, Some(middle(&a, &b)), message);
         }
     }
 }
 
+/// Half way between two points.
+pub(crate) fn middle(a: &Point, b: &Point) -> Point {
+    a + (b - a) / 2.0
+}
+
 /// Rooms and cars without an opening: nobody can be seen to come out of them.
-fn open_plan(location: &Location, faults: &mut Vec<Fault>) {
+fn open_plan(location: &Location, found: &mut Vec<Finding>) {
     for (nodes, why) in Enclosures::of(location).open_plan() {
         let Some(first) = nodes.first() else { continue };
-        let kind = location.graph.node(first).map_or("", |node| node.kind.as_str());
+        let node = location.graph.node(first);
+        let kind = node.map_or("", |node| node.kind.as_str());
         let message = format!(
             "the type `{kind}` of {} says that it is inside, but {why}; nobody can come out of it or go in. Give it a doorway node or a \
              door, or a type such as `OPEN AREA`",
             names(nodes)
         );
-        faults.push(Fault::new(FaultCode::MType, Where::file(GRAPH).node(first.clone()), message));
+        let fault = Fault::new(FaultCode::MType, Where::file(GRAPH).node(first.clone()), message);
+        found.push(Finding::new(About::Node(first.clone()), node.map(|node| node.at), fault));
     }
 }
 
-fn part_problems(location: &Location, faults: &mut Vec<Fault>) {
+fn part_problems(location: &Location, found: &mut Vec<Finding>) {
     let mut parts = location.graph.parts();
     if parts.len() < 2 {
         return;
@@ -153,7 +174,11 @@ fn part_problems(location: &Location, faults: &mut Vec<Fault>) {
     parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
     let listed: Vec<String> = parts.iter().map(|part| names(part)).collect();
     let message = format!("the graph falls into {} parts: {}; join them by edges", parts.len(), listed.join(" | "));
-    faults.push(Fault::new(FaultCode::MParts, Where::file(GRAPH), message));
+    // The smallest part is what was most likely forgotten.
+    let least = parts.last().and_then(|part| location.graph.node(part.first()?));
+    let fault = Fault::new(FaultCode::MParts, Where::file(GRAPH), message);
+    let about = least.map_or(About::Whole, |node| About::Node(node.id.clone()));
+    found.push(Finding::new(about, least.map(|node| node.at), fault));
 }
 
 /// Ids in a row, at most a dozen.
@@ -166,16 +191,17 @@ fn names(ids: &[NodeId]) -> String {
 /// What is wrong with a door of a location: its line, its rule, and the nodes behind it.
 #[must_use]
 pub fn check_door(location: &Location, index: usize) -> Vec<Fault> {
-    let mut faults = Vec::new();
+    let mut found = Vec::new();
     if let Some(door) = location.doors.get(index) {
-        door_problems(location, index, door, &mut faults);
+        door_problems(location, index, door, &mut found);
     }
-    faults
+    found.into_iter().map(|finding| finding.fault).collect()
 }
 
-fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Vec<Fault>) {
+fn door_problems(location: &Location, index: usize, door: &Door, found: &mut Vec<Finding>) {
     let mut fault = |code: FaultCode, message: String| {
-        faults.push(Fault::new(code, Where::file(EXTRA).at_key(format_args!("door `{}`", door.id)), message))
+        let place = Where::file(EXTRA).at_key(format_args!("door `{}`", door.id));
+        found.push(Finding::new(About::Door(index), Some(door.middle()), Fault::new(code, place, message)))
     };
     if door.id.trim().is_empty() {
         fault(FaultCode::MId, format!("door {} has an empty id", index + 1));
@@ -226,10 +252,12 @@ fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Ve
 /// Longest name of an area, letters.
 const NAME_MAX: usize = 60;
 
-fn name_problems(location: &Location, index: usize, area: &AreaName, faults: &mut Vec<Fault>) {
+fn name_problems(location: &Location, index: usize, area: &AreaName, found: &mut Vec<Finding>) {
     let shown: String = area.name.chars().take(NAME_MAX).collect();
     let mut fault = |code: FaultCode, message: String| {
-        faults.push(Fault::new(code, Where::file(EXTRA).at_key(format_args!("name `{shown}`")), message));
+        let at = area.nodes.iter().find_map(|id| location.graph.node(id)).map(|node| node.at);
+        let place = Where::file(EXTRA).at_key(format_args!("name `{shown}`"));
+        found.push(Finding::new(About::Name(index), at, Fault::new(code, place, message)));
     };
     let letters = area.name.chars().count();
     if area.name.trim() != area.name || !(1..=NAME_MAX).contains(&letters) || area.name.chars().any(char::is_control) {

@@ -10,11 +10,13 @@ use crate::read::GRAPH;
 
 /// Keys of the file as networkx writes them; edges are called `links` or, by newer versions, `edges`.
 const TOP_KEYS: [&str; 6] = ["directed", "multigraph", "graph", "nodes", "links", "edges"];
+/// A position farther off than this is not kept, pixels.
+const FAR_PX: f64 = 1e6;
 const NODE_KEYS: [&str; 3] = ["id", "type", "pos"];
 /// `key` is written by networkx for multigraphs.
 const EDGE_KEYS: [&str; 4] = ["type", "source", "target", "key"];
 
-/// Reads the file; `None` when nothing of it can be used. Every problem goes to `faults`.
+/// Reads the file; `None` when it is no node-link data. Every problem goes to `faults`.
 ///
 /// Without a grid the positions are only checked for their form.
 pub(crate) fn read(bytes: &[u8], grid: Option<&Grid>, faults: &mut Vec<Fault>) -> Option<SceneGraph> {
@@ -50,7 +52,6 @@ pub(crate) fn read(bytes: &[u8], grid: Option<&Grid>, faults: &mut Vec<Fault>) -
             Where::file(GRAPH),
             "has no node; at least two and an edge between them are needed",
         );
-        return None;
     }
     Some(SceneGraph::new(nodes, edges))
 }
@@ -209,7 +210,8 @@ impl Reading<'_> {
             let message = format!("`pos` is `{value}`; the image is {} by {} pixels", grid.width, grid.height);
             self.fault(FaultCode::MValue, at, message);
         }
-        inside.then(|| grid.world_from_pixel(*px, *py))
+        // One outside keeps its place, so that a person who mends the file sees where it went.
+        (inside || px.abs().max(py.abs()) < FAR_PX).then(|| grid.world_from_pixel(*px, *py))
     }
 }
 

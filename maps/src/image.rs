@@ -123,8 +123,11 @@ fn png(bytes: &[u8]) -> Result<Picture, String> {
     }
 }
 
-/// An 8-bit gray PNG of these bytes; the same input gives the same bytes.
-pub(crate) fn gray_png(width: usize, height: usize, shades: &[u8]) -> Result<Vec<u8>, String> {
+/// An 8-bit gray PNG of these bytes, row by row from the top, one a pixel; the same input gives the same bytes.
+///
+/// # Errors
+/// In words, where a side is 0 or the bytes are not `width` by `height`.
+pub fn gray_png(width: usize, height: usize, shades: &[u8]) -> Result<Vec<u8>, String> {
     let side = |n: usize| u32::try_from(n).map_err(|_too_large| format!("an image side of {n} pixels is too large"));
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, side(width)?, side(height)?);

@@ -19,6 +19,7 @@
 mod check;
 mod doors_file;
 mod field;
+mod finding;
 mod generate;
 mod geodesic;
 mod graph_file;
@@ -40,12 +41,14 @@ pub mod random;
 pub mod shipped;
 pub mod written;
 
-pub use check::{check, check_door};
+pub use check::{check, check_door, findings};
 pub use field::{DistanceField, free_disc, nearest_free};
+pub use finding::{About, Finding};
 pub use generate::generate;
 pub use geodesic::Geodesic;
 pub use ground::{Ground, Kept};
+pub use image::gray_png;
 pub use layer::Layer;
-pub use read::{EXTRA, GRAPH, MAP, MapWithFiles, load, load_map, load_raw, parse};
+pub use read::{Draft, EXTRA, GRAPH, MAP, MapWithFiles, draft, load, load_map, load_raw, parse, whole};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
-use socrates_model::{Fault, FaultCode, GraphEdge, Grid, Location, SceneGraph, Where};
+use socrates_model::{Fault, FaultCode, GraphEdge, Grid, Location, Point, SceneGraph, Where};
 
-use crate::field::DistanceField;
-use crate::{check, doors_file, graph_file, image, map_file, route};
+use crate::check::{self, middle};
+use crate::finding::{About, Finding};
+use crate::ground::Ground;
+use crate::{doors_file, graph_file, image, map_file, route};
 
 /// Name of the map's description in a location folder.
 pub const MAP: &str = "map.yaml";
@@ -140,39 +142,43 @@ impl Missing {
     }
 }
 
+/// A location as it is drawn: whatever its files hold that has a place in a location, sound or not.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    /// The location, its edges straight, not checked; without nodes where there is no scene graph.
+    pub location: Location,
+    /// What of the files was not taken over (an edge to a node that is not there, a second node of one id, an unknown key), and what
+    /// is not as it should be of what was.
+    pub faults: Vec<Fault>,
+}
+
+/// Reads files for somebody who mends them: as [`parse`], but what is wrong with nodes, edges and doors refuses nothing.
+///
+/// # Errors
+/// Every problem, where the map, the scene graph or the file of the doors cannot be read at all.
+pub fn draft(files: &BTreeMap<String, Vec<u8>>, name: &str) -> Result<Draft, Vec<Fault>> {
+    let (mut faults, mut warnings) = (Vec::new(), Vec::new());
+    match drawn(files, name, Missing::Unnamed, &mut faults, &mut warnings) {
+        Some(location) => Ok(Draft { location: Location { warnings, ..location }, faults }),
+        None => Err(faults),
+    }
+}
+
 fn assemble(files: &BTreeMap<String, Vec<u8>>, name: &str, missing: Missing) -> Result<Location, Vec<Fault>> {
-    let mut faults = Vec::new();
-    let mut warnings: Vec<String> = Vec::new();
-    let grid = read_grid(files, missing, &mut faults, &mut warnings);
-    // Node positions need the map; without one the graph is still read, over a map of no cells.
-    let graph = match files.get(GRAPH) {
-        Some(bytes) => graph_file::read(bytes, grid.as_ref(), &mut faults),
-        None => {
-            missing.say(GRAPH, "is missing; it holds the nodes and edges of the map", &mut faults);
-            None
-        }
-    };
-    let extra = match files.get(EXTRA) {
-        Some(bytes) => doors_file::read(bytes, &mut faults),
-        None => Some(doors_file::LocationFile::default()),
-    };
-    let (Some(grid), Some(graph), Some(extra)) = (grid, graph, extra) else { return Err(faults) };
-    let description = extra.description.unwrap_or_else(|| name.replace(['_', '-'], " "));
-    let mut location = Location {
-        format: socrates_model::FORMAT,
-        name: name.to_owned(),
-        description,
-        grid,
-        graph,
-        doors: extra.doors,
-        names: extra.names,
-        warnings: Vec::new(),
-    };
-    route_edges(&mut location, &mut faults, &mut warnings);
-    // An edge that could not be routed is named already, with the reason.
+    let (mut faults, mut warnings) = (Vec::new(), Vec::new());
+    let drawn = drawn(files, name, missing, &mut faults, &mut warnings);
+    if !files.contains_key(GRAPH) {
+        missing.say(GRAPH, "is missing; it holds the nodes and edges of the map", &mut faults);
+        return Err(faults);
+    }
+    let Some(mut location) = drawn else { return Err(faults) };
+    let (led, found): (Vec<Finding>, Vec<Finding>) =
+        whole(&mut location).into_iter().partition(|finding| finding.fault.code == FaultCode::MRoute);
+    warnings.extend(led.iter().map(|finding| finding.fault.to_string()));
+    // What the reader of a file named already, with the reason, is not said again.
     let named: Vec<(FaultCode, Where)> = faults.iter().map(|fault| (fault.code, fault.at.clone())).collect();
     let fresh = |fault: &Fault| !named.contains(&(fault.code, fault.at.clone()));
-    faults.extend(check(&location).into_iter().filter(fresh));
+    faults.extend(found.into_iter().map(|finding| finding.fault).filter(fresh));
     faults.sort();
     faults.dedup();
     let (soft, hard): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(Fault::is_soft);
@@ -181,6 +187,38 @@ fn assemble(files: &BTreeMap<String, Vec<u8>>, name: &str, missing: Missing) -> 
     }
     location.warnings = warnings.into_iter().chain(soft.iter().map(ToString::to_string)).collect();
     Ok(location)
+}
+
+/// What the files hold, unchecked, without warnings; none where a file cannot be read.
+fn drawn(
+    files: &BTreeMap<String, Vec<u8>>,
+    name: &str,
+    missing: Missing,
+    faults: &mut Vec<Fault>,
+    warnings: &mut Vec<String>,
+) -> Option<Location> {
+    let grid = read_grid(files, missing, faults, warnings);
+    // Node positions need the map; without one the graph is still read, over a map of no cells.
+    let graph = match files.get(GRAPH) {
+        Some(bytes) => graph_file::read(bytes, grid.as_ref(), faults),
+        None => Some(SceneGraph::default()),
+    };
+    let extra = match files.get(EXTRA) {
+        Some(bytes) => doors_file::read(bytes, faults),
+        None => Some(doors_file::LocationFile::default()),
+    };
+    let (grid, graph, extra) = (grid?, graph?, extra?);
+    let description = extra.description.unwrap_or_else(|| name.replace(['_', '-'], " "));
+    Some(Location {
+        format: socrates_model::FORMAT,
+        name: name.to_owned(),
+        description,
+        grid,
+        graph,
+        doors: extra.doors,
+        names: extra.names,
+        warnings: Vec::new(),
+    })
 }
 
 fn read_grid(
@@ -213,53 +251,79 @@ pub(crate) fn edge_at(edge: &GraphEdge) -> Where {
     Where::file(GRAPH).at_key(format_args!("edge `{}` – `{}`", edge.from, edge.to))
 }
 
+/// Everything that can be said of a location as a whole: its edges are led round walls, with a finding for each of them, then it is
+/// checked. What this says is what reading the folder says.
+pub fn whole(location: &mut Location) -> Vec<Finding> {
+    let mut found = route_edges(location);
+    // An edge that could not be routed is named already, with the reason.
+    let unrouted: Vec<About> = found
+        .iter()
+        .filter(|finding| finding.fault.code == FaultCode::GFree)
+        .map(|finding| finding.about.clone())
+        .collect();
+    let fresh = |finding: &Finding| finding.fault.code != FaultCode::GFree || !unrouted.contains(&finding.about);
+    found.extend(check::findings(location).into_iter().filter(fresh));
+    found
+}
+
 /// Leads every edge whose straight line meets walls round them, or says that there is no way.
-fn route_edges(location: &mut Location, faults: &mut Vec<Fault>, warnings: &mut Vec<String>) {
-    let mut field: Option<DistanceField> = None;
-    let sight = crate::Sight::new(&location.grid);
+fn route_edges(location: &mut Location) -> Vec<Finding> {
+    let ground = Ground::of(&location.grid);
+    let mut found = Vec::new();
     let mut led = location.graph.edges().to_vec();
     for edge in &mut led {
         let ends = location.graph.node(&edge.from).zip(location.graph.node(&edge.to));
         let Some((a, b)) = ends.map(|(a, b)| (a.at, b.at)) else { continue };
         // A node in a wall is its own fault; a way from there says nothing new.
-        if !location.grid.is_free(&a) || !location.grid.is_free(&b) || sight.clear(&a, &b) {
+        if !location.grid.is_free(&a) || !location.grid.is_free(&b) || ground.sight().clear(&a, &b) {
             continue;
         }
-        let field = field.get_or_insert_with(|| DistanceField::new(&location.grid));
-        let way = ROUTE_RADII_M.iter().find_map(|radius| route::shortest_path(&location.grid, field, &a, &b, *radius));
-        let at = edge_at(edge);
-        let straight_m = (b - a).norm();
-        let length = |way: &[socrates_model::Point]| -> f64 {
-            way.windows(2).map(|pair| if let [p, q] = pair { (q - p).norm() } else { 0.0 }).sum()
-        };
-        match way.map(|way| (length(&way), way)) {
-            Some((length_m, way)) if length_m <= DETOUR * straight_m + DETOUR_M => {
-                edge.via = way.get(1..way.len().saturating_sub(1)).unwrap_or_default().to_vec();
-                let message = format!(
-                    "the straight line of {straight_m:.2} m crosses walls; it was led round them through {} points, {length_m:.2} m",
-                    edge.via.len()
-                );
-                warnings.push(Fault::new(FaultCode::MRoute, at, message).to_string());
-            }
-            Some((length_m, _)) => faults.push(Fault::new(
-                FaultCode::GFree,
-                at,
-                format!("the straight line of {straight_m:.2} m crosses walls and the way round is {length_m:.1} m; remove the edge or move its nodes"),
-            )),
-            None => faults.push(Fault::new(
-                FaultCode::GFree,
-                at,
-                format!("the straight line of {straight_m:.2} m crosses walls and there is no way round; open the wall in the image or remove the edge"),
-            )),
-        }
+        let fault = led_round(&ground, edge, (&a, &b));
+        found.push(Finding::new(About::Edge(edge.from.clone(), edge.to.clone()), Some(middle(&a, &b)), fault));
     }
     location.graph = location.graph.edited(|_, edges| *edges = led);
+    found
+}
+
+/// Leads an edge round walls; a warning that it was, or why it was not.
+fn led_round(ground: &Ground, edge: &mut GraphEdge, (a, b): (&Point, &Point)) -> Fault {
+    let (grid, field) = (ground.grid(), ground.field());
+    let way = ROUTE_RADII_M.iter().find_map(|radius| route::shortest_path(grid, field, a, b, *radius));
+    let at = edge_at(edge);
+    let straight_m = (b - a).norm();
+    let length = |way: &[Point]| -> f64 {
+        way.windows(2).map(|pair| if let [p, q] = pair { (q - p).norm() } else { 0.0 }).sum()
+    };
+    match way.map(|way| (length(&way), way)) {
+        Some((length_m, way)) if length_m <= DETOUR * straight_m + DETOUR_M => {
+            edge.via = way.get(1..way.len().saturating_sub(1)).unwrap_or_default().to_vec();
+            let message = format!(
+                "the straight line of {straight_m:.2} m crosses walls; it was led round them through {} points, {length_m:.2} m",
+                edge.via.len()
+            );
+            Fault::new(FaultCode::MRoute, at, message)
+        }
+        Some((length_m, _)) => Fault::new(
+            FaultCode::GFree,
+            at,
+            format!(
+                "the straight line of {straight_m:.2} m crosses walls and the way round is {length_m:.1} m; remove the edge or move its nodes"
+            ),
+        ),
+        None => Fault::new(
+            FaultCode::GFree,
+            at,
+            format!(
+                "the straight line of {straight_m:.2} m crosses walls and there is no way round; open the wall in the image or remove the edge"
+            ),
+        ),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Sight;
+    use crate::{DistanceField, Sight};
 
     /// Two rooms with a gap at y 2 to 3, and an edge that runs below the gap.
     const PLAN: &str = r#"description = "Two rooms."

@@ -6,6 +6,7 @@ mod consoles;
 mod deploy;
 mod drivers;
 mod graphs;
+mod editors;
 mod live;
 mod looks;
 pub(crate) mod models;

@@ -8,6 +8,7 @@ const PURE: &[&str] = &[
     "bus/model",
     "bus/checks",
     "maps/annotate",
+    "maps/edit",
     "workers/simulation/crowd",
     "workers/simulation/engine",
     "workers/simulation/planners",

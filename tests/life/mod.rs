@@ -20,6 +20,7 @@ mod leaving;
 mod libraries;
 mod live;
 mod maps;
+mod map_edit;
 mod no_ways;
 mod observing;
 mod originals;

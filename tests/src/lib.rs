@@ -12,6 +12,7 @@
 
 pub mod browser;
 pub mod console;
+pub mod editor;
 pub mod program;
 pub mod skip;
 

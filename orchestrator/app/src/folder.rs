@@ -1,7 +1,7 @@
 //! Folders that belong to this user alone: the work folder of a making, and the one of its socket.
 
 use std::fs::{File, Permissions};
-use std::io::Write as _;
+use std::io::{Seek as _, Write as _};
 use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
@@ -64,13 +64,35 @@ pub(crate) struct Hold {
     file: File,
 }
 
+/// What a folder is held for, in the words of those who are refused.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HoldFor {
+    /// What is done with it: `being made`.
+    pub(crate) doing: &'static str,
+    /// What helps where somebody else does it.
+    pub(crate) instead: &'static str,
+    /// What helps where nothing can be written.
+    pub(crate) elsewhere: &'static str,
+}
+
+/// A run or a library is made in it.
+const MAKING: HoldFor = HoldFor {
+    doing: "being made",
+    instead: "wait for it or end it, or choose another folder with --out",
+    elsewhere: "--out chooses another folder",
+};
+
 impl Hold {
     /// Takes a work folder, made where needed, and closes it to other users.
     pub(crate) fn take(work: &Path) -> Result<Self, Complaint> {
+        Self::take_for(work, MAKING)
+    }
+
+    /// The same for something else than making a run.
+    pub(crate) fn take_for(work: &Path, what: HoldFor) -> Result<Self, Complaint> {
         let made = work.parent().unwrap_or(work).display();
-        let cannot = |why: std::io::Error| {
-            Complaint::input(format!("cannot write into `{made}`: {why}"), "--out chooses another folder")
-        };
+        let cannot =
+            |why: std::io::Error| Complaint::input(format!("cannot write into `{made}`: {why}"), what.elsewhere);
         std::fs::create_dir_all(work).map_err(cannot)?;
         std::fs::set_permissions(work, Permissions::from_mode(OWNER)).map_err(cannot)?;
         let path = work.join(HOLD_FILE);
@@ -79,15 +101,19 @@ impl Hold {
             Ok(()) => {}
             Err(std::fs::TryLockError::WouldBlock) => {
                 let holder = std::fs::read_to_string(&path).unwrap_or_default();
-                return Err(Complaint::input(
-                    format!("`{made}` is being made by process {}", holder.trim()),
-                    "wait for it or end it, or choose another folder with --out",
-                ));
+                let told = format!("`{made}` is {} by process {}", what.doing, holder.trim());
+                return Err(Complaint::input(told, what.instead));
             }
             Err(std::fs::TryLockError::Error(why)) => return Err(cannot(why)),
         }
         file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(cannot)?;
         Ok(Self { path, file })
+    }
+
+    /// Says more about the holder to those who are refused, behind its process id.
+    pub(crate) fn tell(&mut self, more: &str) -> std::io::Result<()> {
+        self.file.seek(std::io::SeekFrom::Start(0))?;
+        writeln!(self.file, "{}{more}", std::process::id())
     }
 
     /// Says so when the folder was taken away under its maker.

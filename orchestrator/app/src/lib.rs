@@ -43,6 +43,7 @@ pub mod dev;
 pub mod drive_check;
 mod driver_process;
 mod dry_run;
+pub mod editor;
 mod encounters;
 pub mod evaluate;
 pub mod exit;
@@ -68,6 +69,7 @@ pub mod layout;
 pub mod library_coverage;
 mod library_index;
 pub mod logs;
+mod loopback;
 mod many;
 pub mod map;
 #[cfg(test)]

@@ -88,7 +88,7 @@ pub(crate) fn annotated(file: &Path, options: &Options) -> Result<RawMap, Compla
 }
 
 /// What a location of a map file is called: its folder where the file is called `map`, else the file.
-fn name(file: &Path) -> String {
+pub(crate) fn name(file: &Path) -> String {
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = file.parent().and_then(|folder| folder.canonicalize().ok());
     let folder = folder.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());

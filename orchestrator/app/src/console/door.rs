@@ -5,9 +5,8 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::rejection::{BytesRejection, PathRejection};
-use axum::extract::{DefaultBodyLimit, Path, Request, State};
+use axum::extract::{DefaultBodyLimit, Path, State};
 use axum::http::{HeaderValue, Method, StatusCode, header};
-use axum::middleware::{self, Next};
 use axum::response::{IntoResponse as _, Response};
 use axum::routing::{get, post};
 use serde::Deserialize;
@@ -19,6 +18,7 @@ use tokio::time::Instant;
 use super::desk::{Desk, DeskError, Said};
 use super::reply::Waiting;
 use super::wire;
+use crate::loopback::{self, body, refused, told};
 
 /// Model that is listed and that the printed lines name; any other name is taken as well.
 pub(super) const NAME: &str = "person";
@@ -28,9 +28,13 @@ pub(super) const QUESTION_BYTES: usize = 16 << 20;
 pub(super) const ANSWER_BYTES: usize = 2 << 20;
 /// Faults of an answer that are shown.
 const FAULTS: usize = 12;
-/// What the page may do: nothing from elsewhere, no script but ours.
-const POLICY: &str = "default-src 'none'; connect-src 'self'; img-src data:; style-src 'self'; script-src 'self'; base-uri 'none'; \
-                      form-action 'none'; frame-ancestors 'none'";
+/// Who is not let in, and what the page may do: nothing from elsewhere, no script but ours.
+const WORDS: loopback::Words = loopback::Words {
+    stranger: "only programs of this machine and the page of this console may ask here",
+    token: "the token is missing or wrong; open the address that `socrates author console` printed",
+    policy: "default-src 'none'; connect-src 'self'; img-src data:; style-src 'self'; script-src 'self'; base-uri 'none'; \
+             form-action 'none'; frame-ancestors 'none'",
+};
 
 /// What all answers share.
 pub(super) struct Shared {
@@ -40,38 +44,24 @@ pub(super) struct Shared {
 
 /// The routes of a console.
 pub(super) fn routes(shared: Arc<Shared>) -> Router {
+    let door = Arc::new(loopback::Door { rules: Arc::clone(&shared.rules), words: WORDS });
     let of_page = Router::new()
         .route("/questions", get(list))
         .route("/questions/{number}", get(one))
         .route("/questions/{number}/check", post(check))
         .route("/questions/{number}/answer", post(answer))
         .route("/questions/{number}/refusal", post(refuse))
-        .layer(DefaultBodyLimit::max(ANSWER_BYTES))
-        .layer(middleware::from_fn_with_state(Arc::clone(&shared), with_token));
-    Router::new()
+        .layer(DefaultBodyLimit::max(ANSWER_BYTES));
+    let all = Router::new()
         .route("/", get(page))
         .route("/console.css", get(style))
         .route("/console.js", get(script))
         .route("/v1/models", get(models))
         .route("/v1/chat/completions", post(complete).layer(DefaultBodyLimit::max(QUESTION_BYTES)))
-        .merge(of_page)
+        .merge(door.with_token(of_page))
         .fallback(nowhere)
-        .method_not_allowed_fallback(otherwise)
-        .layer(middleware::from_fn_with_state(Arc::clone(&shared), guarded))
-        .with_state(shared)
-}
-
-/// JSON as an answer.
-fn told(what: &Value) -> Response {
-    ([(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")], what.to_string())
-        .into_response()
-}
-
-/// An error in the words of Chat Completions.
-fn refused(status: StatusCode, message: &str, param: Option<&str>, code: &str) -> Response {
-    let kind = if status.is_server_error() { "server_error" } else { "invalid_request_error" };
-    let error = json!({"error": {"message": message, "type": kind, "param": param, "code": code}});
-    (status, told(&error)).into_response()
+        .method_not_allowed_fallback(otherwise);
+    door.guarded(all).with_state(shared)
 }
 
 async fn nowhere() -> Response {
@@ -83,32 +73,6 @@ async fn otherwise(method: Method) -> Response {
     let message =
         format!("this address does not answer {method}; /v1/chat/completions takes POST, /v1/models takes GET");
     refused(StatusCode::METHOD_NOT_ALLOWED, &message, None, "method_not_allowed")
-}
-
-/// Looks at host and origin: a page of a stranger in the same browser puts no questions and reads none.
-async fn guarded(State(shared): State<Arc<Shared>>, request: Request, next: Next) -> Response {
-    if shared.rules.address(request.headers()).is_err() {
-        let message = "only programs of this machine and the page of this console may ask here";
-        return refused(StatusCode::FORBIDDEN, message, None, "forbidden");
-    }
-    let mut answer = next.run(request).await;
-    let headers = answer.headers_mut();
-    for (name, value) in [
-        (header::CONTENT_SECURITY_POLICY, POLICY),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::REFERRER_POLICY, "no-referrer"),
-    ] {
-        headers.insert(name, HeaderValue::from_static(value));
-    }
-    answer
-}
-
-async fn with_token(State(shared): State<Arc<Shared>>, request: Request, next: Next) -> Response {
-    if shared.rules.token(request.headers()).is_err() {
-        let message = "the token is missing or wrong; open the address that `socrates author console` printed";
-        return refused(StatusCode::UNAUTHORIZED, message, None, "no_token");
-    }
-    next.run(request).await
 }
 
 fn part(media: &'static str, text: &'static str) -> Response {
@@ -129,14 +93,6 @@ async fn script() -> Response {
 
 async fn models() -> Response {
     told(&json!({"object": "list", "data": [{"id": NAME, "object": "model", "created": 0, "owned_by": "socrates"}]}))
-}
-
-/// The bytes of a request, or the answer that there are too many.
-fn body(bytes: Result<Bytes, BytesRejection>, most: usize) -> Result<Bytes, Response> {
-    bytes.map_err(|why| {
-        let message = format!("the request cannot be read ({why}); at most {most} bytes");
-        refused(StatusCode::PAYLOAD_TOO_LARGE, &message, None, "too_large")
-    })
 }
 
 async fn complete(

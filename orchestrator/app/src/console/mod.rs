@@ -13,24 +13,18 @@ mod door;
 mod reply;
 mod wire;
 
-use std::net::Ipv4Addr;
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_gateway::guard::Rules;
-use socrates_gateway::server;
-use tokio::net::TcpListener;
 use tokio::time::Instant;
 
-use crate::exit::{Code, Complaint};
+use crate::exit::Complaint;
+use crate::loopback::Loopback;
 use crate::output::Printer;
 use crate::process::leave;
-use crate::view::new_token;
 use desk::{Desk, News};
 use door::{NAME, Shared};
 
-/// Connections at once: a page has a few, and so has each program that asks.
-const MOST: usize = 256;
 /// How long a person may think: the longest time that a call can be given, s.
 const THINK_S: u32 = 86_400;
 
@@ -50,14 +44,8 @@ pub struct ConsoleOptions {
 /// # Errors
 /// A [`Complaint`] where the port is taken, or no token can be drawn.
 pub async fn console(talk: &Printer, options: &ConsoleOptions) -> Result<(), Complaint> {
-    let port = options.port.unwrap_or(0);
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await.map_err(|why| {
-        let hint = "name another with `--port`, or leave it out for any that is free";
-        Complaint::input(format!("cannot listen on port {port} of this machine: {why}"), hint)
-    })?;
-    let address = listener.local_addr().map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
-    let token = new_token()?;
-    let (page, base) = (format!("http://{address}/#token={token}"), format!("http://{address}/v1"));
+    let loopback = Loopback::bind(options.port).await?;
+    let (page, base, token) = (loopback.page(), format!("http://{}/v1", loopback.address), &loopback.token);
     let run = |author: &str| {
         format!(
             "socrates run my.toml --author {author} --set author.console.url={base} --set author.longest_s={THINK_S}"
@@ -71,14 +59,11 @@ pub async fn console(talk: &Printer, options: &ConsoleOptions) -> Result<(), Com
     talk.line("The address of the page lets whoever has it answer. Ctrl-C ends; what waits is then asked again, or elsewhere.");
     talk.result(&json!({"page": page, "base": base, "run": run, "record": record, "token": token}));
     if options.open {
-        let opens = page.clone();
-        // The desktop's program may stay for as long as its window.
-        drop(tokio::task::spawn_blocking(move || crate::files::open_outside(opens.as_ref())));
+        loopback.open();
     }
-    let rules = Arc::new(Rules { token: Some(token), most: MOST, ..Rules::default() });
     let (desk, mut news) = Desk::new(Instant::now());
-    let shared = Arc::new(Shared { desk, rules: Arc::clone(&rules) });
-    let served = server::serve(listener, door::routes(shared), rules, None);
+    let shared = Arc::new(Shared { desk, rules: Arc::clone(&loopback.rules) });
+    let served = loopback.serve(door::routes(shared));
     tokio::pin!(served);
     let mut leaves = leave(options.tied);
     loop {

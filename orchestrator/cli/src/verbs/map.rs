@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use socrates_app::editor::{self, EditOptions};
 use socrates_app::output::Printer;
 use socrates_app::{build, graphs, map};
 
@@ -51,6 +52,8 @@ enum MapVerb {
         #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
         elevator: Vec<String>,
     },
+    /// Draw a location's scene graph and doors at a page in the browser, checked as you draw.
+    Edit(Edit),
     /// Say how near the second annotation of a map comes to the first: nodes, edges, types, doors, detours, validity.
     Score {
         /// A shipped name or a folder: what counts as true.
@@ -126,8 +129,38 @@ enum MapVerb {
     },
 }
 
+/// Arguments of `map edit`.
+#[derive(Debug, Args)]
+struct Edit {
+    /// A folder, a map file (map.yaml beside its image), or a shipped name. A folder is edited where it is, of the others a copy.
+    location: String,
+    /// Edit a copy in this folder; for a map file or a shipped name `<name>-edited` by default.
+    #[arg(long, short)]
+    out: Option<PathBuf>,
+    /// Only look: nothing is changed, and somebody else may edit the folder meanwhile.
+    #[arg(long, conflicts_with = "fresh")]
+    read_only: bool,
+    /// Begin with the files as they are: what was drawn before and not saved is put aside.
+    #[arg(long)]
+    fresh: bool,
+    /// Port of this machine; default any that is free.
+    #[arg(long)]
+    port: Option<u16>,
+    /// Open a browser.
+    #[arg(long)]
+    open: bool,
+    /// Leave when standard input closes.
+    #[arg(long, hide = true)]
+    tied: bool,
+}
+
 impl Map {
-    pub(super) fn act(&self, talk: &Printer) -> Outcome {
+    /// Whether this process is the child of another one that it leaves with.
+    pub(super) const fn is_tied(&self) -> bool {
+        matches!(self.verb, MapVerb::Edit(Edit { tied: true, .. }))
+    }
+
+    pub(super) async fn act(&self, talk: &Printer) -> Outcome {
         done(match &self.verb {
             MapVerb::List => map::list(talk),
             MapVerb::Check { location } => map::check(talk, location),
@@ -153,6 +186,18 @@ impl Map {
                 graphs::import(talk, file, &options)
             }
             MapVerb::Name { location, area, name, out } => graphs::name(talk, location, area, name, out.as_deref()),
+            MapVerb::Edit(Edit { location, out, read_only, fresh, port, open, tied }) => {
+                let options = EditOptions {
+                    location: location.clone(),
+                    out: out.clone(),
+                    read_only: *read_only,
+                    fresh: *fresh,
+                    port: *port,
+                    open: *open,
+                    tied: *tied,
+                };
+                editor::edit(talk, &options).await
+            }
             MapVerb::Score { first, second } => map::score(talk, first, second),
             MapVerb::Generate { plan, random, kind, out } => match (plan, random, kind, out) {
                 (_, Some(seed), Some(kind), out) => map::random(talk, *seed, kind, out.as_deref()),

@@ -183,6 +183,7 @@ impl Verb {
             || matches!(self, Self::Orchestrator(cluster::Up { tied: true, .. }))
             || matches!(self, Self::View(view::View { tied: true, .. }))
             || matches!(self, Self::Author(author) if author.is_tied())
+            || matches!(self, Self::Map(map) if map.is_tied())
             || matches!(self, Self::Play(_))
     }
 
@@ -214,7 +215,7 @@ impl Verb {
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),
             Self::Bt(verb) => verb.act(talk),
-            Self::Map(verb) => verb.act(talk),
+            Self::Map(verb) => verb.act(talk).await,
             Self::Author(verb) => verb.act(talk).await,
             Self::Evaluate(verb) => verb.act(talk, config).await,
             Self::Experiment(verb) => verb.act(talk, config).await,
