@@ -1,0 +1,518 @@
+//! Pass 4: chunks to clauses, by recursive descent. Passive, inversion, relative clauses and ellipsis are undone here and nowhere else.
+//!
+//! ```text
+//! text      = sentence*
+//! sentence  = ( join | condition | clause )*
+//! condition = tie clause                                  when, until, before, after, while, unless
+//! clause    = subject? ( act | amount | place | condition | filler )*
+//! subject   = noun ( ("," | "and") noun )*
+//! ```
+//! A clause ends at a mark, at a join, and where another subject begins.
+
+use std::ops::Range;
+
+use socrates_model::{Gesture, PlaceClass};
+
+use crate::chunk::{Amount, Chunk, Is};
+use crate::find::{Found, longest};
+use crate::lexicon::Lexicon;
+use crate::noun::{BRISK_MPS, Head, Noun, Pick, SLOW_MPS};
+use crate::token::{Bent, Mark, Sort};
+
+/// How a clause follows the one before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Join {
+    /// A sentence begins.
+    Start,
+    /// `and`, a comma.
+    And,
+    /// `but`, `whereas`.
+    But,
+    /// `then`, an arrow.
+    Then,
+    /// A colon, a bracket: what follows tells of what stands before.
+    Colon,
+}
+
+/// How a condition is tied to its clause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tie {
+    When,
+    Until,
+    Before,
+    After,
+    While,
+    Unless,
+}
+
+/// A subordinate clause that says when.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Condition {
+    pub(crate) tie: Tie,
+    pub(crate) clause: Clause,
+}
+
+/// One act of a clause, or another phrase that matches a row.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Predicate {
+    /// Number of the row among the frames.
+    pub(crate) row: usize,
+    pub(crate) object: Option<Noun>,
+    pub(crate) owner: Option<Noun>,
+    pub(crate) not: bool,
+    /// Whether the subject is the one to whom it is done.
+    pub(crate) passive: bool,
+    /// What is asked for, or said.
+    pub(crate) sign: Option<Gesture>,
+    pub(crate) tokens: Range<usize>,
+}
+
+/// A place with how it is spoken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct At {
+    pub(crate) class: Option<PlaceClass>,
+    pub(crate) to: bool,
+    pub(crate) from: bool,
+    /// Its first token.
+    pub(crate) token: usize,
+}
+
+/// A clause.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Clause {
+    pub(crate) join: Join,
+    /// Whose acts; of an ellipsis, those of the clause before. Empty where nobody was named yet.
+    pub(crate) subject: Vec<Noun>,
+    pub(crate) acts: Vec<Predicate>,
+    /// By whom, in the passive.
+    pub(crate) agent: Option<Noun>,
+    pub(crate) lasts_s: Option<f64>,
+    pub(crate) after_s: Option<f64>,
+    pub(crate) within_m: Option<f64>,
+    pub(crate) pace_mps: Option<f64>,
+    pub(crate) places: Vec<At>,
+    pub(crate) conditions: Vec<Condition>,
+    /// Tokens of which nothing was made.
+    pub(crate) left: Vec<usize>,
+    /// Tokens that tell how somebody looks, or what they have with them.
+    pub(crate) looks: Vec<usize>,
+    pub(crate) tokens: Range<usize>,
+}
+
+impl Clause {
+    fn new(join: Join, at: usize) -> Self {
+        Self {
+            join,
+            subject: Vec::new(),
+            acts: Vec::new(),
+            agent: None,
+            lasts_s: None,
+            after_s: None,
+            within_m: None,
+            pace_mps: None,
+            places: Vec::new(),
+            conditions: Vec::new(),
+            left: Vec::new(),
+            looks: Vec::new(),
+            tokens: at..at,
+        }
+    }
+
+    fn is_bare(&self) -> bool {
+        self.acts.is_empty() && self.places.is_empty() && self.within_m.is_none() && self.lasts_s.is_none() && self.after_s.is_none()
+    }
+}
+
+/// The clauses of a text.
+pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
+    let mut parser = Parser { chunks, lexicon, at: 0, subject: Vec::new(), denied: false, found: Vec::new() };
+    while parser.at < chunks.len() {
+        parser.sentence();
+    }
+    parser.found
+}
+
+struct Parser<'a> {
+    chunks: &'a [Chunk],
+    lexicon: &'a Lexicon,
+    at: usize,
+    /// The subject of the clause before, for an ellipsis.
+    subject: Vec<Noun>,
+    /// Whether the clause before was denied: `doesn't stop or look`.
+    denied: bool,
+    found: Vec<Clause>,
+}
+
+impl Parser<'_> {
+    fn peek(&self) -> Option<&Chunk> {
+        self.chunks.get(self.at)
+    }
+
+    fn ahead(&self, chunks: usize) -> Option<&Chunk> {
+        self.chunks.get(self.at + chunks)
+    }
+
+    fn token(&self) -> usize {
+        self.peek().map_or_else(|| self.chunks.last().map_or(0, |last| last.tokens.end), |chunk| chunk.tokens.start)
+    }
+
+    fn sentence(&mut self) {
+        let mut pending: Vec<Condition> = Vec::new();
+        let first = self.found.len();
+        let mut join = Join::Start;
+        let mut apart = true;
+        while let Some(chunk) = self.peek() {
+            if chunk.is_mark(Mark::Stop) {
+                self.at += 1;
+                break;
+            }
+            if let Some(next) = self.joins(join) {
+                (join, apart) = (next, true);
+                self.at += 1;
+                continue;
+            }
+            if let Some(tie) = self.tie() {
+                let condition = self.condition(tie);
+                let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
+                let before = self.found.len() > first && (!apart || !more);
+                match self.found.last_mut().filter(|_| before) {
+                    Some(clause) => clause.conditions.push(condition),
+                    None => pending.push(condition),
+                }
+                continue;
+            }
+            let start = self.at;
+            let mut clause = self.clause(join, false);
+            // What may not begin a clause is left over.
+            if self.at == start {
+                clause.left.extend(self.peek().into_iter().flat_map(|chunk| chunk.tokens.clone()));
+                self.at += 1;
+            }
+            clause.tokens.end = self.token().max(clause.tokens.end);
+            if clause.conditions.is_empty() || !pending.is_empty() {
+                clause.conditions.append(&mut pending);
+            }
+            self.share(&mut clause, first);
+            self.found.push(clause);
+            (join, apart) = (Join::And, false);
+        }
+        if let Some(condition) = pending.pop() {
+            let mut clause = Clause::new(join, condition.clause.tokens.start);
+            clause.tokens = condition.clause.tokens.clone();
+            clause.subject = condition.clause.subject.clone();
+            clause.conditions.push(condition);
+            clause.conditions.append(&mut pending);
+            self.found.push(clause);
+        }
+    }
+
+    /// What is said when for the first of several acts holds for those joined to it: `when it is near, he stops and looks`.
+    fn share(&self, clause: &mut Clause, first: usize) {
+        let Some(before) = self.found.get(first..).and_then(<[Clause]>::last) else { return };
+        let joined = clause.join == Join::And && clause.conditions.is_empty() && clause.after_s.is_none();
+        if joined && before.subject == clause.subject && !before.acts.is_empty() {
+            clause.conditions.clone_from(&before.conditions);
+            clause.conditions.retain(|condition| condition.tie != Tie::Until && condition.tie != Tie::While);
+        }
+    }
+
+    /// A word or mark that joins clauses, and how.
+    fn joins(&self, join: Join) -> Option<Join> {
+        let chunk = self.peek()?;
+        Some(match &chunk.is {
+            Is::Mark(Mark::Colon | Mark::Open) => Join::Colon,
+            Is::Mark(Mark::Arrow) => Join::Then,
+            Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) if join == Join::Start => Join::Start,
+            Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) => if matches!(join, Join::Colon) { join } else { Join::And },
+            Is::Mark(Mark::Quote) => join,
+            Is::Word if chunk.word(Sort::But) => Join::But,
+            Is::Word if chunk.word(Sort::Then) && !chunk.word(Sort::Not) => Join::Then,
+            Is::Word if chunk.word(Sort::And) || chunk.lemma == "or" || chunk.lemma == "nor" => match join {
+                Join::Then | Join::Colon => join,
+                _ => Join::And,
+            },
+            _ => return None,
+        })
+    }
+
+    /// Whether the chunk begins a condition.
+    fn tie(&self) -> Option<Tie> {
+        let chunk = self.peek().filter(|chunk| chunk.is == Is::Word)?;
+        let next = self.ahead(1);
+        let follows = |next: &Chunk| {
+            matches!(next.is, Is::Noun(_) | Is::Whose(_))
+                || next.bent == Bent::Ing && next.is == Is::Word
+                || next.word(Sort::Verb) && next.bent == Bent::Ed
+        };
+        let person = next.is_some_and(follows);
+        let tie = match () {
+            () if chunk.word(Sort::Until) => Tie::Until,
+            () if chunk.word(Sort::Unless) => Tie::Unless,
+            () if chunk.word(Sort::When) => Tie::When,
+            () if chunk.word(Sort::Before) && person => Tie::Before,
+            () if chunk.word(Sort::After) && person => Tie::After,
+            () if chunk.word(Sort::While) && person => Tie::While,
+            () => return None,
+        };
+        (tie == Tie::Until || next.is_some_and(|next| !matches!(next.is, Is::Amount(_)))).then_some(tie)
+    }
+
+    fn condition(&mut self, tie: Tie) -> Condition {
+        let start = self.token();
+        self.at += 1;
+        let (subject, denied) = (self.subject.clone(), self.denied);
+        self.denied = false;
+        let mut clause = self.clause(Join::And, true);
+        clause.tokens.start = start;
+        // The subject of a condition is that of its clause as well: `when she sees it, stops`; but never the robot.
+        self.subject = if subject.is_empty() && !clause.subject.iter().any(Noun::may_be_robot) { clause.subject.clone() } else { subject };
+        self.denied = denied;
+        Condition { tie, clause }
+    }
+
+    fn clause(&mut self, join: Join, inner: bool) -> Clause {
+        let mut clause = Clause::new(join, self.token());
+        let mut not = self.denied && join == Join::And && self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.lemma == "or" || before.lemma == "nor");
+        let mut own = self.relative(&mut clause);
+        while let Some(chunk) = self.peek() {
+            if self.ends(&clause, inner) {
+                break;
+            }
+            match &chunk.is {
+                Is::Noun(noun) if clause.subject.is_empty() && (clause.is_bare() || !inner) && clause.acts.is_empty() => {
+                    let noun = noun.clone();
+                    not |= noun.pick == Pick::None;
+                    clause.subject.push(noun);
+                    self.at += 1;
+                    self.subject_list(&mut clause);
+                    own = true;
+                }
+                Is::Noun(noun) => {
+                    let noun = noun.clone();
+                    if self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::By)) && clause.acts.iter().any(|act| act.passive) {
+                        clause.agent = Some(noun);
+                    } else {
+                        clause.left.extend(noun.tokens);
+                    }
+                    self.at += 1;
+                }
+                Is::Amount(amount) => {
+                    let amount = *amount;
+                    match longest(self.chunks, self.at, &self.lexicon.frame_patterns) {
+                        Some(found) => self.predicate(found, &mut not, &mut clause),
+                        None => self.amount(amount, &mut clause),
+                    }
+                }
+                Is::Place(class) => {
+                    let class = *class;
+                    if let Some(found) = longest(self.chunks, self.at, &self.lexicon.frame_patterns) {
+                        self.predicate(found, &mut not, &mut clause);
+                    } else {
+                        self.place(class, &mut clause);
+                    }
+                }
+                Is::Whose(_) | Is::Mark(_) => self.at += 1,
+                Is::Word => {
+                    if let Some(tie) = self.tie().filter(|_| !inner) {
+                        let condition = self.condition(tie);
+                        clause.conditions.push(condition);
+                        if self.peek().is_some_and(|next| next.is_mark(Mark::Comma)) && clause.acts.is_empty() && own {
+                            self.at += 1;
+                        }
+                    } else {
+                        self.word(&mut not, &mut clause);
+                    }
+                }
+            }
+        }
+        self.denied = not || clause.acts.iter().any(|act| act.not);
+        if own {
+            self.subject.clone_from(&clause.subject);
+        } else {
+            clause.subject.clone_from(&self.subject);
+        }
+        clause.tokens.end = self.token();
+        clause
+    }
+
+    /// `who …`: of whoever was named last.
+    fn relative(&mut self, clause: &mut Clause) -> bool {
+        let who = self.peek().filter(|chunk| chunk.word(Sort::Who)).map(|chunk| chunk.tokens.clone());
+        let Some(tokens) = who.filter(|_| self.at > 0) else { return false };
+        clause.subject.push(Noun::new(Head::Who, tokens));
+        self.at += 1;
+        true
+    }
+
+    /// More subjects: `a doctor, a nurse and two visitors`.
+    fn subject_list(&mut self, clause: &mut Clause) {
+        loop {
+            let comma = self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Comma));
+            let and = self.peek().is_some_and(|chunk| chunk.word(Sort::And));
+            let both = comma && self.ahead(1).is_some_and(|chunk| chunk.word(Sort::And));
+            let skip = if both { 2 } else { 1 };
+            if !comma && !and {
+                return;
+            }
+            let Some(Is::Noun(noun)) = self.ahead(skip).map(|chunk| &chunk.is) else { return };
+            // `A nurse, both …` tells more of the same.
+            if matches!(noun.pick, Pick::All | Pick::None) || noun.of.is_some() || noun.head == Head::Robot && !and {
+                return;
+            }
+            let noun = noun.clone();
+            clause.subject.push(noun);
+            self.at += skip + 1;
+        }
+    }
+
+    /// Whether the clause ends before the chunk.
+    fn ends(&self, clause: &Clause, inner: bool) -> bool {
+        let Some(chunk) = self.peek() else { return true };
+        match &chunk.is {
+            Is::Mark(Mark::Quote) => false,
+            Is::Mark(Mark::Comma) => !(clause.is_bare() && !clause.subject.is_empty() && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) && next.bent == Bent::Ing)),
+            Is::Mark(_) => true,
+            Is::Noun(noun) => {
+                let by = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::By) || before.word(Sort::At) || before.word(Sort::To) || before.word(Sort::Of) || before.lemma == "than" || before.lemma == "with");
+                let complete = !clause.acts.is_empty() || inner && !clause.is_bare();
+                complete && !by && noun.tokens.start > 0
+            }
+            Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.lemma == "or" || chunk.lemma == "nor" => true,
+            Is::Word if chunk.word(Sort::Then) => true,
+            Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => !clause.subject.is_empty() || !clause.acts.is_empty(),
+            // `that` after a noun begins a relative clause.
+            Is::Word if chunk.word(Sort::Who) => {
+                let after_noun = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.noun().is_some());
+                after_noun && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) || next.word(Sort::Be) || next.word(Sort::Modal))
+            }
+            Is::Word if inner => self.tie().is_some() && !clause.is_bare(),
+            Is::Word | Is::Whose(_) | Is::Amount(_) | Is::Place(_) => false,
+        }
+    }
+
+    fn amount(&mut self, amount: Amount, clause: &mut Clause) {
+        let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
+        let after = before.is_some_and(|before| before.word(Sort::After))
+            || self.ahead(1).is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After));
+        match amount {
+            Amount::Distance(m) => clause.within_m = Some(m),
+            Amount::Time(secs) if after => clause.after_s = Some(secs),
+            Amount::Time(secs) => clause.lasts_s = Some(secs),
+        }
+        self.at += 1;
+        if after && self.peek().is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After)) {
+            self.at += 1;
+        }
+    }
+
+    fn place(&mut self, class: Option<PlaceClass>, clause: &mut Clause) {
+        let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
+        let to = before.is_some_and(|before| before.word(Sort::To) || before.lemma == "into" || before.lemma == "toward");
+        let from = before.is_some_and(|before| before.word(Sort::From));
+        clause.places.push(At { class, to, from, token: self.token() });
+        self.at += 1;
+    }
+
+    fn word(&mut self, not: &mut bool, clause: &mut Clause) {
+        let Some(chunk) = self.peek() else { return };
+        if let Some(found) = longest(self.chunks, self.at, &self.lexicon.frame_patterns) {
+            self.predicate(found, not, clause);
+            return;
+        }
+        if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
+            *not = true;
+        } else if chunk.word(Sort::Slow) {
+            clause.pace_mps = Some(SLOW_MPS);
+        } else if chunk.word(Sort::Brisk) {
+            clause.pace_mps = Some(BRISK_MPS);
+        } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) {
+            clause.looks.extend(chunk.tokens.clone());
+        } else if !says_nothing(chunk) {
+            clause.left.extend(chunk.tokens.clone());
+        }
+        self.at += 1;
+    }
+
+    fn predicate(&mut self, found: Found, not: &mut bool, clause: &mut Clause) {
+        let start = self.token();
+        for between in &found.between {
+            let Some(chunk) = self.chunks.get(*between) else { continue };
+            if chunk.word(Sort::Slow) {
+                clause.pace_mps = Some(SLOW_MPS);
+            } else if chunk.word(Sort::Brisk) {
+                clause.pace_mps = Some(BRISK_MPS);
+            }
+        }
+        let verb = self.peek().map(|chunk| (chunk.word(Sort::Slow), chunk.word(Sort::Brisk)));
+        match verb {
+            Some((true, _)) => clause.pace_mps = Some(SLOW_MPS),
+            Some((_, true)) => clause.pace_mps = Some(BRISK_MPS),
+            _ => {}
+        }
+        let passive = found.passive && self.at > 0;
+        self.at = found.end;
+        match found.amount {
+            Some(Amount::Distance(m)) => clause.within_m = Some(m),
+            Some(Amount::Time(secs)) => clause.lasts_s = Some(secs),
+            None => {}
+        }
+        let token = start;
+        clause.places.extend(found.place.map(|class| At { class, to: false, from: false, token }));
+        let frame = self.lexicon.frames.get(found.row);
+        let mut sign = frame.and_then(|frame| frame.says);
+        if frame.is_some_and(|frame| frame.asks) {
+            sign = self.speech().or(sign);
+        }
+        if frame.is_some_and(|frame| frame.denies) {
+            *not = !*not;
+            return;
+        }
+        let tokens = start..self.token();
+        let act = Predicate { row: found.row, object: found.object, owner: found.owner, not: *not, passive, sign, tokens };
+        clause.acts.push(act);
+    }
+
+    /// What is said or asked for: `to make room`, `"excuse me"`.
+    fn speech(&mut self) -> Option<Gesture> {
+        let mut at = self.at;
+        let mut quoted = false;
+        while let Some(chunk) = self.chunks.get(at) {
+            let sign = longest(self.chunks, at, &self.lexicon.sign_patterns);
+            let asked = longest(self.chunks, at, &self.lexicon.frame_patterns)
+                .and_then(|found| Some((found.end, self.lexicon.frames.get(found.row)?.asked?)));
+            let said = sign.and_then(|found| Some((found.end, self.lexicon.signs.get(found.row)?.says)));
+            let best = match (said, asked) {
+                (Some(said), Some(asked)) => Some(if said.0 >= asked.0 { said } else { asked }),
+                (said, asked) => said.or(asked),
+            };
+            if let Some((end, gesture)) = best {
+                self.at = end;
+                while self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Quote)) {
+                    self.at += 1;
+                }
+                return Some(gesture);
+            }
+            match &chunk.is {
+                Is::Mark(Mark::Quote) => quoted = true,
+                Is::Mark(Mark::Comma | Mark::Colon) if !quoted && self.chunks.get(at + 1).is_some_and(|next| next.is_mark(Mark::Quote)) => {}
+                Is::Mark(Mark::Comma) if quoted => {}
+                Is::Mark(_) => return None,
+                Is::Noun(_) => {}
+                Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::When) || chunk.word(Sort::Until) => return None,
+                Is::Word if says_nothing(chunk) || chunk.word(Sort::Not) => {}
+                Is::Word | Is::Whose(_) | Is::Place(_) | Is::Amount(_) => return None,
+            }
+            at += 1;
+        }
+        None
+    }
+}
+
+/// Whether a word says nothing of its own.
+pub(crate) fn says_nothing(chunk: &Chunk) -> bool {
+    let silent = [
+        Sort::Fill, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Definite, Sort::Indefinite, Sort::To, Sort::Of, Sort::By, Sort::At,
+        Sort::From, Sort::Then, Sort::Who, Sort::And, Sort::While, Sort::Later, Sort::After, Sort::Before,
+    ];
+    chunk.is == Is::Word && silent.iter().any(|sort| chunk.sorts.has(*sort)) || chunk.is == Is::Word && chunk.text == crate::lex::OWNS
+}

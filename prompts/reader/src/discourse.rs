@@ -1,0 +1,319 @@
+//! Pass 6: who is meant. Statements of noun phrases become statements of people, in the order of the text.
+//!
+//! People are numbered from 0 as they are named. Whoever was named last is `he`; the last several are `they`, and those of
+//! whom `one`, `the second` and `the others` are spoken.
+
+use std::collections::BTreeMap;
+
+use socrates_model::Gesture;
+
+use crate::noun::{Head, Noun, Pick};
+use crate::rows::{Act, Cue};
+use crate::statement::{Deed, Named, Reason, Says, Statement};
+
+/// People, by their numbers from 0.
+pub type People = Vec<usize>;
+
+/// Statements of people, and the role of everybody.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Told {
+    pub(crate) roles: Vec<String>,
+    pub(crate) statements: Vec<Statement<People>>,
+}
+
+/// Words that mean anybody.
+const ANYBODY: &[&str] = &["person", "people", "human", "pedestrian", "one", "individual", "participant"];
+/// How many several people are of whom no number is said.
+const SEVERAL: usize = 2;
+/// No phrase means more people than this.
+const MOST: usize = 30;
+
+/// Finds out who is meant.
+pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
+    let mut cast = Cast::default();
+    let mut told = Vec::new();
+    for statement in statements {
+        cast.begin(statement);
+        let says = cast.says(&statement.says);
+        if let Some(says) = says {
+            let Statement { tokens, first, tells, .. } = statement;
+            told.push(Statement { tokens: tokens.clone(), first: *first, tells: *tells, says });
+        }
+    }
+    Told { roles: cast.roles, statements: told }
+}
+
+#[derive(Default)]
+struct Cast {
+    roles: Vec<String>,
+    /// Who was named last.
+    last: People,
+    /// The last several who were named together.
+    set: People,
+    /// Who of them was picked since.
+    picked: People,
+    /// Who a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
+    meant: BTreeMap<usize, People>,
+    /// Those of whom a colon tells, who have no role yet.
+    unnamed: People,
+    tells: bool,
+    /// What people react to from now on.
+    pending: Vec<Reason<People>>,
+    /// What was asked for last.
+    asked: Option<Gesture>,
+}
+
+impl Cast {
+    fn begin(&mut self, statement: &Statement<Named>) {
+        if statement.first {
+            self.unnamed.clear();
+            // A sign is answered in the next sentence as well.
+            self.pending.retain(|reason| reason.cue == Cue::Says);
+        }
+        self.tells = statement.tells;
+    }
+
+    fn says(&mut self, says: &Says<Named>) -> Option<Says<People>> {
+        Some(match says {
+            Says::Introduce(who) => Says::Introduce(self.people(who)),
+            Says::Relate(who, relation, side) => Says::Relate(self.people(who), *relation, *side),
+            Says::Group(who) => Says::Group(self.people(who)),
+            Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
+            Says::Do(deed) => Says::Do(self.deed(deed)),
+            Says::RobotSays(sign, to) => {
+                let to = to.as_ref().map(|to| self.people(to));
+                self.asked = sign.or(self.asked);
+                self.pending = vec![Reason { who: None, cue: Cue::Says, sign: *sign, amount: None }];
+                Says::RobotSays(*sign, to)
+            }
+            Says::Then(reason) => {
+                let reason = self.reason(reason);
+                self.pending = vec![reason.clone()];
+                Says::Then(reason)
+            }
+            Says::Happens(class) => Says::Happens(*class),
+            Says::RobotStart(class) => Says::RobotStart(*class),
+            Says::RobotGoal(class) => Says::RobotGoal(*class),
+            Says::Background(reason) => Says::Background(*reason),
+            Says::NotPlayed(why) => Says::NotPlayed(why.clone()),
+            Says::NotRead => Says::NotRead,
+        })
+    }
+
+    fn reason(&mut self, reason: &Reason<Named>) -> Reason<People> {
+        let who = reason.who.as_ref().map(|who| self.people(who));
+        if reason.cue == Cue::Says && reason.sign.is_some() {
+            self.asked = reason.sign;
+        }
+        Reason { who, cue: reason.cue, sign: reason.sign, amount: reason.amount }
+    }
+
+    fn deed(&mut self, deed: &Deed<Named>) -> Deed<People> {
+        let who = self.people(&deed.who);
+        let whom = deed.whom.as_ref().map(|whom| {
+            let last = self.last.clone();
+            let whom = self.people(whom);
+            self.last = last;
+            whom
+        });
+        let mut when: Vec<Reason<People>> = deed.when.iter().map(|reason| self.reason(reason)).collect();
+        let until: Vec<Reason<People>> = deed.until.iter().map(|reason| self.reason(reason)).collect();
+        if when.is_empty() && !deed.not {
+            when.clone_from(&self.pending);
+        }
+        let act = if deed.obeys { self.asked_for().unwrap_or(deed.act) } else { deed.act };
+        // `steps aside when it asks him to`
+        for reason in when.iter_mut().filter(|reason| reason.cue == Cue::Says && reason.sign.is_none()) {
+            reason.sign = sign_for(act);
+        }
+        self.last.clone_from(&who);
+        if act == Act::Sign && !deed.not {
+            // Whoever makes a sign is reacted to by others.
+            self.pending = vec![Reason { who: Some(who.clone()), cue: Cue::Says, sign: deed.says, amount: None }];
+            self.asked = deed.says.or(self.asked);
+        }
+        Deed { who, act, whom, not: deed.not, when, until, for_s: deed.for_s, says: deed.says, obeys: deed.obeys }
+    }
+
+    fn asked_for(&self) -> Option<Act> {
+        self.asked.map(|sign| match sign {
+            Gesture::Wait => Act::StandStill,
+            Gesture::Proceed | Gesture::Acknowledged => Act::Navigate,
+            Gesture::ExcuseMe => Act::GiveWay,
+            Gesture::FollowMe => Act::Follow,
+        })
+    }
+
+    fn people(&mut self, nouns: &Named) -> People {
+        let mut all = People::new();
+        let mut fresh = false;
+        for noun in nouns {
+            let known = self.meant.get(&noun.tokens.start).cloned();
+            fresh |= known.is_none();
+            let meant = known.unwrap_or_else(|| self.meant(noun));
+            self.meant.insert(noun.tokens.start, meant.clone());
+            for person in meant {
+                if !all.contains(&person) {
+                    all.push(person);
+                }
+            }
+        }
+        if all.len() > 1 && fresh && !self.is_part_of_set(&all) {
+            self.set.clone_from(&all);
+            self.picked.clear();
+        }
+        if !all.is_empty() {
+            self.last.clone_from(&all);
+        }
+        all
+    }
+
+    fn is_part_of_set(&self, people: &[usize]) -> bool {
+        people.len() < self.set.len() && people.iter().all(|person| self.set.contains(person))
+    }
+
+    fn everybody(&self) -> People {
+        (0..self.roles.len()).collect()
+    }
+
+    /// Whom a noun phrase means; new people where nobody was named so.
+    fn meant(&mut self, noun: &Noun) -> People {
+        match &noun.head {
+            Head::Robot => People::new(),
+            Head::He | Head::It => self.one_named_last(),
+            Head::They => match () {
+                () if self.last.len() > 1 => self.last.clone(),
+                () if !self.set.is_empty() => self.set.clone(),
+                () => self.everybody(),
+            },
+            Head::Who => self.last.clone(),
+            Head::Bare => self.bare(noun),
+            Head::Role(role) => self.role(noun, role),
+        }
+    }
+
+    fn one_named_last(&self) -> People {
+        match self.last[..] {
+            [_] => self.last.clone(),
+            [] => self.everybody().into_iter().rev().take(1).collect(),
+            [first, ..] => vec![first],
+        }
+    }
+
+    /// `the first`, `two of them`, `the others`, `both`.
+    fn bare(&mut self, noun: &Noun) -> People {
+        let base = match &noun.of {
+            Some(of) => {
+                let of = vec![(**of).clone()];
+                let base = self.people(&of);
+                if base.len() > 1 && base != self.set {
+                    (self.set, self.picked) = (base.clone(), People::new());
+                }
+                base
+            }
+            None if !self.set.is_empty() => self.set.clone(),
+            None => self.everybody(),
+        };
+        match self.picks(noun, &base) {
+            Some(people) => people,
+            None => self.new_people(noun, "person"),
+        }
+    }
+
+    /// Those of some people whom a phrase picks; none where there are too few.
+    fn picks(&mut self, noun: &Noun, base: &[usize]) -> Option<People> {
+        let count = noun.count.map(|count| usize::try_from(count).unwrap_or(MOST));
+        let free: People = base.iter().copied().filter(|person| !self.picked.contains(person)).collect();
+        let people: People = match (noun.pick, noun.ordinal) {
+            (Pick::All | Pick::None, _) => base.to_vec(),
+            (_, Some(0)) => base.iter().copied().skip(base.len().checked_sub(count.unwrap_or(1))?).collect(),
+            (_, Some(number)) => {
+                let skip = usize::try_from(number).ok()?.checked_sub(1)?;
+                base.iter().copied().skip(skip).take(count.unwrap_or(1)).collect()
+            }
+            (Pick::Former, _) => base.iter().copied().take(1).collect(),
+            (Pick::Others, _) => {
+                let rest: People = base.iter().copied().filter(|person| !self.picked.contains(person)).collect();
+                let rest = if rest.len() == base.len() { base.iter().copied().filter(|person| !self.last.contains(person)).collect() } else { rest };
+                rest.into_iter().take(count.unwrap_or(MOST)).collect()
+            }
+            (Pick::Another, _) => free.into_iter().take(count.unwrap_or(1)).collect(),
+            (Pick::The, None) => base.iter().copied().take(count.unwrap_or(1)).collect(),
+            (Pick::Plain | Pick::Some, None) => free.into_iter().take(count.unwrap_or(1)).collect(),
+        };
+        if people.is_empty() || count.is_some_and(|count| people.len() < count) {
+            return None;
+        }
+        if people.len() < base.len() {
+            self.picked.extend(people.iter().copied());
+        }
+        Some(people)
+    }
+
+    fn role(&mut self, noun: &Noun, role: &str) -> People {
+        let count = noun.count.map_or(if noun.several { SEVERAL } else { 1 }, |count| usize::try_from(count).unwrap_or(MOST));
+        let anybody = ANYBODY.contains(&role);
+        if self.tells && noun.pick != Pick::The && !self.unnamed.is_empty() && self.unnamed.len() >= count {
+            let named: People = self.unnamed.drain(..count).collect();
+            for person in &named {
+                if let Some(own) = self.roles.get_mut(*person) {
+                    role.clone_into(own);
+                }
+            }
+            return named;
+        }
+        let known: People = match () {
+            () if anybody && !self.set.is_empty() && noun.several => self.set.clone(),
+            () if anybody => self.everybody(),
+            () => self.everybody().into_iter().filter(|person| self.roles.get(*person).is_some_and(|own| own == role)).collect(),
+        };
+        let found = match noun.pick {
+            Pick::Some | Pick::Another => None,
+            _ if known.is_empty() => None,
+            Pick::The | Pick::Plain if noun.ordinal.is_none() && noun.count.is_none() && !noun.several => {
+                let recent = self.last.iter().rev().find(|person| known.contains(person)).copied();
+                recent.or_else(|| known.last().copied()).filter(|_| noun.pick == Pick::The || known.len() == 1).map(|person| vec![person])
+            }
+            Pick::The | Pick::Plain if noun.several && noun.ordinal.is_none() => {
+                Some(known).filter(|known| known.len() > 1 && noun.count.is_none_or(|_| known.len() == count))
+            }
+            _ => self.picks(noun, &known),
+        };
+        match (found, noun.pick) {
+            (Some(people), _) => people,
+            (None, Pick::None) => People::new(),
+            (None, _) => self.new_people(noun, role),
+        }
+    }
+
+    fn new_people(&mut self, noun: &Noun, role: &str) -> People {
+        let count = match noun.count {
+            Some(count) => usize::try_from(count).unwrap_or(MOST).min(MOST),
+            None if noun.several => SEVERAL,
+            None => 1,
+        };
+        let first = self.roles.len();
+        // `a second nurse` is one more.
+        let count = if noun.ordinal.is_some() && noun.count.is_none() { 1 } else { count };
+        self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
+        let people: People = (first..first + count).collect();
+        if ANYBODY.contains(&role) && count > 1 {
+            self.unnamed.clone_from(&people);
+        }
+        if count == 1 && !self.set.is_empty() && noun.pick == Pick::Another {
+            self.set.extend(people.iter().copied());
+        }
+        people
+    }
+}
+
+/// The sign by which somebody is asked for an act.
+const fn sign_for(act: Act) -> Option<Gesture> {
+    match act {
+        Act::GiveWay | Act::RunAway => Some(Gesture::ExcuseMe),
+        Act::StandStill | Act::Block => Some(Gesture::Wait),
+        Act::Follow | Act::Approach => Some(Gesture::FollowMe),
+        Act::Navigate => Some(Gesture::Proceed),
+        Act::Look | Act::TurnBack | Act::Sign => None,
+    }
+}

@@ -1,0 +1,154 @@
+//! Pass 1: text to tokens.
+//!
+//! ```text
+//! "doesn't stop at 2m." ─► does/do n't/not stop at #2 m <Stop>
+//! ```
+
+use unicode_segmentation::UnicodeSegmentation as _;
+
+use crate::token::{Bent, Kind, Mark, Token};
+use crate::words::Words;
+
+/// What stands for what it is short of: the rest of a word after its apostrophe.
+const SHORT: &[(&str, &str)] = &[("n't", "not"), ("'re", "be"), ("'m", "be"), ("'ll", "will"), ("'ve", "have"), ("'d", "would")];
+/// The possessor's ending, or a short `is`: the chunker decides.
+pub(crate) const OWNS: &str = "'s";
+/// Words of fewer letters are not corrected.
+const CORRECTED_FROM: usize = 5;
+
+/// Cuts a text into tokens.
+pub(crate) fn lex(text: &str, words: &Words) -> Vec<Token> {
+    let mut tokens: Vec<Token> = Vec::new();
+    for (start, piece) in text.split_word_bound_indices() {
+        if piece.chars().next().is_some_and(char::is_alphanumeric) {
+            word(start, piece, words, &mut tokens);
+        } else {
+            marks(start, piece, text, &mut tokens);
+        }
+    }
+    tokens
+}
+
+/// A word of the alphabet, or a number with what is stuck to it: `2m`, `doesn't`, `robot's`.
+fn word(start: usize, piece: &str, words: &Words, tokens: &mut Vec<Token>) {
+    let lower = piece.to_lowercase().replace('\u{2019}', "'");
+    let digits = lower.find(|c: char| !c.is_ascii_digit() && c != '.' && c != ',').unwrap_or(lower.len());
+    if digits > 0 {
+        let number = lower.get(..digits).unwrap_or_default().replace(',', ".");
+        if let Ok(number) = number.parse::<f64>() {
+            tokens.push(token(start..start + digits, piece.get(..digits).unwrap_or_default(), Kind::Number(number), words));
+            if digits < piece.len() {
+                let rest = piece.get(digits..).unwrap_or_default();
+                tokens.push(token(start + digits..start + piece.len(), rest, Kind::Word, words));
+            }
+            return;
+        }
+    }
+    // The byte lengths differ where an apostrophe is a curly one: only the end is cut, and it is found in the piece itself.
+    let short = SHORT.iter().map(|(end, _)| *end).chain([OWNS]).find(|end| lower.ends_with(end) && lower.len() > end.len());
+    let Some(end) = short else {
+        tokens.push(token(start..start + piece.len(), piece, Kind::Word, words));
+        return;
+    };
+    let cut = piece.char_indices().rev().nth(end.chars().count() - 1).map_or(piece.len(), |(at, _)| at);
+    tokens.push(token(start..start + cut, piece.get(..cut).unwrap_or_default(), Kind::Word, words));
+    let mut tail = token(start + cut..start + piece.len(), end, Kind::Word, words);
+    if let Some((_, whole)) = SHORT.iter().find(|(short, _)| *short == end) {
+        tail.lemma = (*whole).to_owned();
+        tail.sorts = words.sorts(whole);
+    }
+    tokens.push(tail);
+}
+
+fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
+    let before = text.get(..start).unwrap_or_default();
+    let after = text.get(start + piece.len()..).unwrap_or_default();
+    let apart = before.ends_with(' ') && after.starts_with(' ');
+    let mark = match piece.chars().next() {
+        Some(',') => Mark::Comma,
+        Some('.' | '!' | '?' | '\n' | '\r' | ';' | '…' | '|') => Mark::Stop,
+        Some(':') => Mark::Colon,
+        Some('–' | '—') => Mark::Dash,
+        Some('-') if after.starts_with('>') => Mark::Arrow,
+        Some('-') if apart || before.is_empty() || before.ends_with('\n') => Mark::Dash,
+        Some('→') => Mark::Arrow,
+        Some('(' | '[') => Mark::Open,
+        Some(')' | ']') => Mark::Close,
+        Some('"' | '“' | '”' | '„' | '«' | '»') => Mark::Quote,
+        Some('\'' | '‘' | '’' | '`') if !before.ends_with(char::is_alphanumeric) || !after.starts_with(char::is_alphanumeric) => {
+            Mark::Quote
+        }
+        Some('<' | '+' | '&' | '@' | '#' | '=' | '/') => {
+            tokens.push(Token {
+                at: start..start + piece.len(),
+                text: piece.to_owned(),
+                lemma: piece.to_owned(),
+                kind: Kind::Word,
+                sorts: crate::token::Sorts::default(),
+                bent: Bent::Base,
+            });
+            return;
+        }
+        _ => return,
+    };
+    // `...` and a line's end after a full stop are one.
+    if mark == Mark::Stop && tokens.last().is_none_or(|last| last.is_mark(Mark::Stop)) {
+        return;
+    }
+    let kind = Kind::Mark(mark);
+    tokens.push(Token {
+        at: start..start + piece.len(),
+        text: piece.to_owned(),
+        lemma: piece.to_owned(),
+        kind,
+        sorts: crate::token::Sorts::default(),
+        bent: Bent::Base,
+    });
+}
+
+/// A word as a token, in its base form; a slip of the pen is read as the word that was meant.
+pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: &Words) -> Token {
+    let text = piece.to_lowercase().replace('\u{2019}', "'");
+    let (mut lemma, bent) = words.base(&text);
+    let mut sorts = words.sorts(&text);
+    if sorts.is_empty() {
+        sorts = words.sorts(&lemma);
+    }
+    if kind == Kind::Word && lemma == text && sorts.is_empty() && text.len() >= CORRECTED_FROM {
+        if let Some(meant) = meant(&text, words) {
+            lemma = words.base(&meant).0;
+            sorts = words.sorts(&lemma);
+        }
+    }
+    Token { at, text, lemma, kind, sorts, bent }
+}
+
+/// The known word of which another is a slip of the pen: two letters swapped, or one letter doubled or lost.
+fn meant(text: &str, words: &Words) -> Option<String> {
+    if words.knows_bent(text) {
+        return None;
+    }
+    let first = text.chars().next();
+    let near = |known: &&str| {
+        known.chars().next() == first
+            && known.len().abs_diff(text.len()) <= 1
+            && strsim::osa_distance(known, text) == 1
+            && swapped_or_lost(known, text)
+    };
+    words.long(CORRECTED_FROM).find(near).map(str::to_owned)
+}
+
+/// Not a letter in place of another: `patent` is no `patient`, `coridor` is a `corridor`.
+fn swapped_or_lost(known: &str, text: &str) -> bool {
+    let sorted = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    let squeezed = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.dedup();
+        letters
+    };
+    sorted(known) == sorted(text) || squeezed(known) == squeezed(text)
+}

@@ -1,0 +1,122 @@
+//! The reader of requests: text to statements to a form. No map, no catalogue of cards, no geometry, no weights.
+//!
+//! ```text
+//! text ─► tokens ─► scene ─────► chunks ─► clauses ─► statements ──► people ────► story ─► form
+//!         lex       normalize    chunk     clause     statement      discourse    story
+//!         words     scopes       noun      find: rows of frames      who is meant
+//!                   rewrites     places    signs                     └────► account: what became of every word
+//! ```
+//!
+//! Each pass is a pure function of the one before it, and prints itself ([`Passes`]). Everything lexical is a row of `data/`
+//! with examples that are tests; how a row is added stands in `ADDING.md`.
+//!
+//! Never: a map, a file, a random number; a word that vanishes: what no statement used is [`Fate::NotRead`].
+
+use std::sync::LazyLock;
+
+mod token;
+mod words;
+
+pub mod pattern;
+mod rows;
+
+mod lexicon;
+
+mod lex;
+mod normalize;
+
+mod noun;
+
+mod chunk;
+mod find;
+
+mod clause;
+mod statement;
+
+mod discourse;
+
+mod account;
+mod story;
+
+mod passes;
+
+mod examples;
+
+pub use account::{Fate, Piece};
+pub use discourse::People;
+pub use examples::Example;
+pub use lexicon::{BadData, Files, SHIPPED};
+pub use passes::Passes;
+pub use rows::{Act, Cue};
+pub use statement::{Deed, Reason, Says, Statement};
+pub use story::{Person, Step, Story};
+
+/// What a text was read as.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Read {
+    /// People, and what they do.
+    pub story: Story,
+    /// What became of every piece of the text.
+    pub pieces: Vec<Piece>,
+}
+
+/// A reader with its rows.
+#[derive(Debug, Default)]
+pub struct Reader(lexicon::Lexicon);
+
+impl Reader {
+    /// The reader by the shipped rows. That they can be read is a test.
+    #[must_use]
+    pub fn shipped() -> &'static Self {
+        static READER: LazyLock<Reader> = LazyLock::new(|| Reader::of(SHIPPED).unwrap_or_default());
+        &READER
+    }
+
+    /// A reader by other rows.
+    ///
+    /// # Errors
+    /// [`BadData`] for a file, key or pattern that cannot be.
+    pub fn of(files: Files<'_>) -> Result<Self, BadData> {
+        lexicon::Lexicon::read(files, None).map(Self)
+    }
+
+    /// A reader without the rows of a name, to count what they earn.
+    ///
+    /// # Errors
+    /// As [`Reader::of`].
+    pub fn without(files: Files<'_>, id: &str) -> Result<Self, BadData> {
+        lexicon::Lexicon::read(files, Some(id)).map(Self)
+    }
+
+    /// Names of the rows that can be left out, in the order of the files.
+    #[must_use]
+    pub fn rows(&self) -> Vec<&str> {
+        let frames = self.0.frames.iter().map(|row| row.id.as_str());
+        let rewrites = self.0.rewrites.iter().map(|row| row.id.as_str());
+        frames.chain(rewrites).chain(self.0.scopes.iter().map(|row| row.id.as_str())).collect()
+    }
+
+    /// The examples of the rows: name, text, what it gives, and whether it does.
+    #[must_use]
+    pub fn examples(&self) -> Vec<Example<'_>> {
+        examples::all(&self.0)
+    }
+
+    /// Every pass of a text.
+    #[must_use]
+    pub fn passes(&self, text: &str) -> Passes<'_> {
+        Passes::by(text, &self.0)
+    }
+
+    /// Reads a text. Never fails: what is not understood stands in [`Read::pieces`].
+    #[must_use]
+    pub fn read(&self, text: &str) -> Read {
+        self.passes(text).read()
+    }
+}
+
+/// Reads a text by the shipped rows.
+#[must_use]
+pub fn read(text: &str) -> Read {
+    Reader::shipped().read(text)
+}

@@ -1,0 +1,391 @@
+//! Noun phrases for people and for the robot: `the first two of the workers`, `an elderly man`, `both`, `it`.
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::lexicon::Lexicon;
+use crate::token::{Bent, Kind, Sort, Token};
+
+/// What a noun phrase is about.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Head {
+    Robot,
+    /// `it`: mostly the robot.
+    It,
+    /// `he`, `she`.
+    He,
+    /// `they`.
+    They,
+    /// `who`, `which`: whoever was named just before.
+    Who,
+    /// A role word, in its base form.
+    Role(String),
+    /// A number, an ordinal or `others` without a noun.
+    Bare,
+}
+
+/// How a noun phrase picks people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pick {
+    /// No article: `worker`.
+    Plain,
+    /// `a`, `some`, a number.
+    Some,
+    /// `the`, `his`.
+    The,
+    /// `all`, `both`, `each`.
+    All,
+    /// `none`, `no`, `neither`.
+    None,
+    /// `the other`.
+    Others,
+    /// `another`.
+    Another,
+    /// `the former`.
+    Former,
+}
+
+/// A noun phrase.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Noun {
+    pub(crate) head: Head,
+    pub(crate) pick: Pick,
+    /// How many.
+    pub(crate) count: Option<u32>,
+    /// Which by number: `the second`, `worker 2`; 0 is the last.
+    pub(crate) ordinal: Option<u32>,
+    /// Whether it is more than one.
+    pub(crate) several: bool,
+    /// Whether they are said to be a group.
+    pub(crate) group: bool,
+    /// How fast they walk, where a word before the role says it, m/s.
+    pub(crate) pace_mps: Option<f64>,
+    /// Of whom: `one of the workers`.
+    pub(crate) of: Option<Box<Noun>>,
+    /// The tokens of it.
+    pub(crate) tokens: Range<usize>,
+}
+
+impl Noun {
+    pub(crate) fn new(head: Head, tokens: Range<usize>) -> Self {
+        Self {
+            head,
+            pick: Pick::Plain,
+            count: None,
+            ordinal: None,
+            several: false,
+            group: false,
+            pace_mps: None,
+            of: None,
+            tokens,
+        }
+    }
+
+    /// Whether it can mean the robot.
+    pub(crate) fn may_be_robot(&self) -> bool {
+        matches!(self.head, Head::Robot | Head::It)
+    }
+
+    /// Whether it can mean somebody.
+    pub(crate) fn may_be_person(&self) -> bool {
+        self.head != Head::Robot
+    }
+}
+
+impl fmt::Display for Noun {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}", self.pick)?;
+        if let Some(count) = self.count {
+            write!(f, " {count}")?;
+        }
+        if let Some(ordinal) = self.ordinal {
+            write!(f, " #{ordinal}")?;
+        }
+        match &self.head {
+            Head::Role(role) => write!(f, " {role}")?,
+            head => write!(f, " {head:?}")?,
+        }
+        if self.several {
+            f.write_str("s")?;
+        }
+        self.of.as_ref().map_or(Ok(()), |of| write!(f, " of ({of})"))
+    }
+}
+
+/// Walking speeds that words before a role mean, m/s: as the form's `slow` and `brisk`.
+pub(crate) const SLOW_MPS: f64 = 0.6;
+/// See [`SLOW_MPS`].
+pub(crate) const BRISK_MPS: f64 = 1.5;
+/// So many words may stand between an article and its noun.
+const MODIFIERS: usize = 5;
+
+struct Reader<'a> {
+    tokens: &'a [Token],
+    lexicon: &'a Lexicon,
+    at: usize,
+}
+
+/// The noun phrase that begins at a token.
+pub(crate) fn noun(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<Noun> {
+    let mut reader = Reader { tokens, lexicon, at };
+    let mut noun = reader.noun()?;
+    noun.tokens = at..reader.at;
+    Some(noun)
+}
+
+impl Reader<'_> {
+    fn peek(&self) -> Option<&Token> {
+        self.tokens.get(self.at)
+    }
+
+    fn take(&mut self, sort: Sort) -> bool {
+        let found = self.peek().is_some_and(|token| token.is(sort));
+        self.at += usize::from(found);
+        found
+    }
+
+    fn noun(&mut self) -> Option<Noun> {
+        let start = self.at;
+        if let Some(noun) = self.pronoun() {
+            return Some(noun);
+        }
+        let mut noun = Noun::new(Head::Bare, start..start);
+        let mut told = false;
+        // `all of the`, `none of`, `each`
+        for (sort, pick) in [(Sort::Every, Pick::All), (Sort::Nobody, Pick::None), (Sort::No, Pick::None)] {
+            if self.take(sort) {
+                (noun.pick, told) = (pick, true);
+            }
+        }
+        if noun.pick == Pick::All && self.peek().is_some_and(|token| token.is(Sort::They)) {
+            self.at += 1;
+            noun.head = Head::They;
+            return Some(noun);
+        }
+        told |= self.determiner(&mut noun);
+        told |= self.numbers(&mut noun);
+        if self.head(&mut noun, told) {
+            self.label(&mut noun);
+            self.of(&mut noun);
+            return Some(noun);
+        }
+        self.without_head(noun, told)
+    }
+
+    /// `he`, `it`, `someone`, `her` where no noun follows.
+    fn pronoun(&mut self) -> Option<Noun> {
+        let token = self.peek()?;
+        let owns = token.is(Sort::Possessive) && self.tokens.get(self.at + 1).is_some_and(Self::can_be_owned);
+        let head = match () {
+            () if token.is(Sort::He) && !owns => Head::He,
+            () if token.is(Sort::They) => Head::They,
+            () if token.is(Sort::It) && !owns => Head::It,
+            () if token.is(Sort::Somebody) => Head::Role("person".to_owned()),
+            () => return None,
+        };
+        let mut noun = Noun::new(head, self.at..self.at + 1);
+        noun.several = noun.head == Head::They;
+        if matches!(noun.head, Head::Role(_)) {
+            noun.pick = Pick::Some;
+        }
+        self.at += 1;
+        Some(noun)
+    }
+
+    /// Whether something can be somebody's: a thing, a part of the body, a way.
+    fn can_be_owned(token: &Token) -> bool {
+        let joins = [Sort::At, Sort::To, Sort::Of, Sort::By, Sort::And, Sort::But, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Be, Sort::Modal, Sort::Not, Sort::Then, Sort::Who, Sort::Do, Sort::Cause, Sort::Definite, Sort::Indefinite];
+        token.kind == Kind::Word && !joins.iter().any(|sort| token.is(*sort)) && token.bent != Bent::Ing
+    }
+
+    fn determiner(&mut self, noun: &mut Noun) -> bool {
+        let Some(token) = self.peek() else { return false };
+        let pick = match () {
+            () if token.lemma == "another" => Pick::Another,
+            () if token.is(Sort::Indefinite) => Pick::Some,
+            () if token.is(Sort::Definite) || token.is(Sort::Possessive) => Pick::The,
+            () => return false,
+        };
+        self.at += 1;
+        if !matches!(noun.pick, Pick::All | Pick::None) {
+            noun.pick = pick;
+        }
+        true
+    }
+
+    /// Numbers, ordinals, `other`, `former`, in any order.
+    fn numbers(&mut self, noun: &mut Noun) -> bool {
+        let start = self.at;
+        while let Some(token) = self.peek() {
+            let words = &self.lexicon.words;
+            if token.is(Sort::Other) {
+                noun.pick = if noun.pick == Pick::Some { Pick::Another } else { Pick::Others };
+            } else if token.is(Sort::Former) {
+                noun.pick = Pick::Former;
+            } else if let Some(ordinal) = words.ordinals.get(&token.lemma).filter(|_| noun.pick != Pick::Plain || self.at > start) {
+                noun.ordinal = Some(*ordinal);
+            } else if let Some(count) = self.count() {
+                if self.tokens.get(self.at + 1).is_some_and(|next| self.is_unit(next)) {
+                    break;
+                }
+                noun.count = Some(count);
+                if noun.pick == Pick::Plain {
+                    noun.pick = Pick::Some;
+                }
+            } else {
+                break;
+            }
+            self.at += 1;
+        }
+        self.at > start
+    }
+
+    fn count(&self) -> Option<u32> {
+        let token = self.peek()?;
+        match token.kind {
+            Kind::Number(number) if number.fract().abs() < f64::EPSILON && (0.0..=40.0).contains(&number) => {
+                format!("{number}").parse().ok()
+            }
+            Kind::Word => self.lexicon.words.numbers.get(&token.lemma).copied(),
+            Kind::Number(_) | Kind::Mark(_) => None,
+        }
+    }
+
+    fn is_unit(&self, token: &Token) -> bool {
+        let words = &self.lexicon.words;
+        words.meters.contains_key(&token.lemma) || words.seconds.contains_key(&token.lemma)
+    }
+
+    /// Whether a word may stand before a role: `an elderly forklift driver`.
+    fn modifies(token: &Token, told: bool) -> bool {
+        token.kind == Kind::Word
+            && (token.is(Sort::Looks)
+                || token.is(Sort::Thing)
+                || token.is(Sort::Slow)
+                || token.is(Sort::Brisk)
+                || token.is(Sort::Role)
+                || told && matches!(token.bent, Bent::Ing | Bent::Ed)
+                || told && token.sorts.is_empty())
+    }
+
+    /// The role, with the words before it.
+    fn head(&mut self, noun: &mut Noun, told: bool) -> bool {
+        let start = self.at;
+        let mut pace = None;
+        while self.at - start <= MODIFIERS {
+            let Some(token) = self.peek() else { break };
+            let next = self.tokens.get(self.at + 1);
+            let compound = |next: &Token| next.is(Sort::Role) || next.is(Sort::People) || next.is(Sort::Robot);
+            if token.is(Sort::Robot) {
+                noun.head = Head::Robot;
+                noun.several = false;
+                self.at += 1;
+                return true;
+            }
+            if (token.is(Sort::Role) || token.is(Sort::People)) && token.bent != Bent::Ing && !next.is_some_and(compound) {
+                noun.head = Head::Role(token.lemma.clone());
+                noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
+                noun.pace_mps = pace;
+                self.at += 1;
+                return true;
+            }
+            if token.is(Sort::Group) && (told || next.is_some_and(|next| next.is(Sort::Of))) {
+                return self.group(noun);
+            }
+            if !Self::modifies(token, told) {
+                break;
+            }
+            if token.is(Sort::Slow) {
+                pace = Some(SLOW_MPS);
+            } else if token.is(Sort::Brisk) {
+                pace = Some(BRISK_MPS);
+            }
+            self.at += 1;
+        }
+        self.at = start;
+        false
+    }
+
+    /// `a group of three visitors`, `a pair of nurses`, `a couple`.
+    fn group(&mut self, noun: &mut Noun) -> bool {
+        let own = self.peek().and_then(|token| match token.lemma.as_str() {
+            "pair" | "couple" | "dyad" | "duo" => Some(2),
+            "trio" => Some(3),
+            _ => None,
+        });
+        self.at += 1;
+        let back = self.at;
+        if self.take(Sort::Of) && let Some(members) = self.noun() {
+            let pick = noun.pick;
+            *noun = Noun { pick, count: members.count.or(own), several: true, group: true, ..members };
+            return true;
+        }
+        self.at = back;
+        if let Some(count) = own.or(noun.count) {
+            *noun = Noun { head: Head::Role("person".to_owned()), count: Some(count), several: true, group: true, ..noun.clone() };
+            return true;
+        }
+        (noun.head, noun.several) = (Head::They, true);
+        true
+    }
+
+    /// `worker 2`, `visitor B`.
+    fn label(&mut self, noun: &mut Noun) {
+        if matches!(noun.head, Head::Robot) || noun.several {
+            return;
+        }
+        let Some(token) = self.peek() else { return };
+        if self.tokens.get(self.at + 1).is_some_and(|next| self.is_unit(next)) {
+            return;
+        }
+        if let (Kind::Number(_), Some(number)) = (&token.kind, self.count()) {
+            (noun.ordinal, noun.pick) = (Some(number), Pick::The);
+            self.at += 1;
+        } else if let [letter @ b'a'..=b'h'] = token.text.as_bytes()
+            && (*letter != b'a' || !self.tokens.get(self.at + 1).is_some_and(|next| next.sorts.is_empty()))
+            && !token.is(Sort::Indefinite)
+        {
+            (noun.ordinal, noun.pick) = (Some(u32::from(letter - b'a') + 1), Pick::The);
+            self.at += 1;
+        }
+    }
+
+    /// `two of the workers`.
+    fn of(&mut self, noun: &mut Noun) {
+        let back = self.at;
+        if noun.head == Head::Bare && self.take(Sort::Of) {
+            if self.peek().is_some_and(|token| token.is(Sort::Who)) {
+                let who = Noun::new(Head::Who, self.at..self.at + 1);
+                self.at += 1;
+                noun.of = Some(Box::new(who));
+                return;
+            }
+            match self.noun() {
+                Some(of) if of.head != Head::Robot => noun.of = Some(Box::new(of)),
+                Some(_) | None => self.at = back,
+            }
+        }
+    }
+
+    /// A number or ordinal that stands for people: `the first`, `one of them`, `both`, `none`.
+    fn without_head(&mut self, mut noun: Noun, told: bool) -> Option<Noun> {
+        let picks = matches!(noun.pick, Pick::All | Pick::None | Pick::Others | Pick::Another | Pick::Former)
+            || noun.ordinal.is_some()
+            || noun.count.is_some();
+        if !told || !picks {
+            return None;
+        }
+        // `no reaction`, `another corridor`, `each time`.
+        self.of(&mut noun);
+        let ends = |token: &Token| {
+            let joins = [Sort::And, Sort::But, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Not, Sort::Of, Sort::Who, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Then, Sort::At, Sort::By, Sort::To, Sort::Verb, Sort::Cause];
+            let number = self.lexicon.words.numbers.contains_key(&token.lemma);
+            !token.is_said() || joins.iter().any(|sort| token.is(*sort)) || token.text.ends_with("ly") || token.is(Sort::Fill) || number
+        };
+        let alone = noun.of.is_some() || self.peek().is_none_or(ends);
+        (alone && noun.pick != Pick::None || noun.of.is_some() || noun.pick == Pick::None && alone).then(|| {
+            noun.several = noun.count.map_or(noun.pick == Pick::All, |count| count > 1);
+            noun
+        })
+    }
+}

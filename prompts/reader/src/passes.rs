@@ -1,0 +1,113 @@
+//! All passes of one text, to be looked at: `socrates read --passes`.
+
+use std::fmt;
+
+use crate::account::{Fate, account};
+use crate::chunk::{Chunk, chunks};
+use crate::clause::{Clause, clauses};
+use crate::discourse::{Told, told};
+use crate::lexicon::Lexicon;
+use crate::normalize::{Scene, normalize};
+use crate::statement::{Named, Says, Statement, statements};
+use crate::story::{Story, story};
+use crate::token::Token;
+use crate::Read;
+
+/// What each pass made of a text.
+#[derive(Debug, Clone)]
+pub struct Passes<'a> {
+    lexicon: &'a Lexicon,
+    text: String,
+    tokens: Vec<Token>,
+    scene: Scene,
+    chunks: Vec<Chunk>,
+    clauses: Vec<Clause>,
+    statements: Vec<Statement<Named>>,
+    told: Told,
+    story: Story,
+}
+
+impl<'a> Passes<'a> {
+    pub(crate) fn by(text: &str, lexicon: &'a Lexicon) -> Self {
+        let tokens = crate::lex::lex(text, &lexicon.words);
+        let scene = normalize(tokens.clone(), lexicon);
+        let chunks = chunks(&scene.tokens, lexicon);
+        let clauses = clauses(&chunks, lexicon);
+        let statements = statements(&clauses, lexicon);
+        let told = told(&statements);
+        let story = story(&told);
+        Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, story }
+    }
+
+    /// What came of it.
+    #[must_use]
+    pub fn read(self) -> Read {
+        let pieces = account(&self.scene, &self.told.statements);
+        Read { story: self.story, pieces }
+    }
+}
+
+impl fmt::Display for Passes<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "text       {}", self.text)?;
+        writeln!(f, "tokens     {}", spaced(&self.tokens))?;
+        for (at, reason) in &self.scene.background {
+            writeln!(f, "background {}: {}", reason.name(), self.text.get(at.clone()).unwrap_or_default())?;
+        }
+        writeln!(f, "chunks     {}", spaced(&self.chunks))?;
+        for clause in &self.clauses {
+            write_clause(f, clause, self.lexicon, "clause     ")?;
+        }
+        for statement in &self.told.statements {
+            writeln!(f, "statement  {}", said(&statement.says))?;
+        }
+        write!(f, "{}", self.story)?;
+        for piece in account(&self.scene, &self.told.statements) {
+            if !matches!(piece.fate, Fate::Read) {
+                writeln!(f, "{:?}: {}", piece.fate, self.text.get(piece.at).unwrap_or_default())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn write_clause(f: &mut fmt::Formatter<'_>, clause: &Clause, lexicon: &Lexicon, name: &str) -> fmt::Result {
+    write!(f, "{name}{:?}", clause.join)?;
+    for noun in &clause.subject {
+        write!(f, " [{noun}]")?;
+    }
+    for act in &clause.acts {
+        let id = lexicon.frames.get(act.row).map_or("?", |frame| frame.id.as_str());
+        let not = if act.not { "not " } else { "" };
+        let passive = if act.passive { " passive" } else { "" };
+        write!(f, " ({not}{id}{passive}")?;
+        if let Some(object) = &act.object {
+            write!(f, " [{object}]")?;
+        }
+        if let Some(sign) = act.sign {
+            write!(f, " {sign}")?;
+        }
+        f.write_str(")")?;
+    }
+    for (what, amount) in [("for", clause.lasts_s), ("after", clause.after_s), ("within", clause.within_m)] {
+        if let Some(amount) = amount {
+            write!(f, " {what} {amount}")?;
+        }
+    }
+    for at in &clause.places {
+        write!(f, " at {}", at.class.map_or("nowhere", |class| class.name()))?;
+    }
+    writeln!(f)?;
+    for condition in &clause.conditions {
+        write_clause(f, &condition.clause, lexicon, &format!("  {:?} ", condition.tie))?;
+    }
+    Ok(())
+}
+
+fn said<W: fmt::Debug>(says: &Says<W>) -> String {
+    format!("{says:?}")
+}
+
+fn spaced<T: fmt::Display>(all: &[T]) -> String {
+    all.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+}

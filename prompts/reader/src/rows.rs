@@ -1,0 +1,215 @@
+//! The rows of `data/`: what a phrase means, as data with examples of its own. Every example is a test (`tests/rows.rs`).
+
+use serde::Deserialize;
+use socrates_model::statement::Background;
+use socrates_model::{Gesture, PlaceClass, Relation, Side};
+
+/// What somebody does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Act {
+    /// Steps aside.
+    GiveWay,
+    /// Stays in front of the robot.
+    Block,
+    /// Looks at the robot.
+    Look,
+    /// Stands still.
+    StandStill,
+    /// Hurries away.
+    RunAway,
+    /// Comes up to the robot.
+    Approach,
+    /// Follows the robot, or somebody.
+    Follow,
+    /// Walks on.
+    Navigate,
+    /// Turns and walks back.
+    TurnBack,
+    /// Makes a sign, and nothing else.
+    Sign,
+}
+
+impl Act {
+    /// Its name in a form.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::GiveWay => "give_way",
+            Self::Block => "block",
+            Self::Look => "look_at_robot",
+            Self::StandStill => "stand_still",
+            Self::RunAway => "run_away",
+            Self::Approach => "approach",
+            Self::Follow => "follow_robot",
+            Self::Navigate => "navigate",
+            Self::TurnBack => "turn_back",
+            Self::Sign => "say",
+        }
+    }
+}
+
+/// What something is as the reason for which somebody begins or ends something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cue {
+    /// The robot is seen.
+    Visible,
+    /// The robot is near.
+    Near,
+    /// The robot is in the way.
+    Blocking,
+    /// The robot moves.
+    Moving,
+    /// The robot stands.
+    Stopped,
+    /// The robot has passed.
+    Passed,
+    /// A sign is made.
+    Says,
+    /// They meet.
+    Encounter,
+    /// The end of the way is reached.
+    Goal,
+    /// So long after the start.
+    After,
+}
+
+/// A row of `frames.toml`: a verb with what belongs to it, or another phrase that says how somebody moves.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Frame {
+    /// Its name, for dumps and counts.
+    pub id: String,
+    /// Patterns, see [`crate::pattern`].
+    pub phrases: Vec<String>,
+    /// How a person of whom it is said stands to the robot's way.
+    pub relate: Option<Relation>,
+    /// On which side.
+    pub side: Option<Side>,
+    /// What the person does.
+    pub act: Option<Act>,
+    /// Whether those of whom it is said are a group.
+    pub group: bool,
+    /// What it is as a reason, said of a person.
+    pub cue: Option<Cue>,
+    /// What it is as a reason, said of the robot.
+    pub robot_cue: Option<Cue>,
+    /// How the person to whom the robot does it stands to its way.
+    pub robot_relate: Option<Relation>,
+    /// A sign that the person, or the robot, makes by it.
+    pub says: Option<Gesture>,
+    /// Whether what is asked for follows: `asks the robot to …`.
+    pub asks: bool,
+    /// The sign by which somebody is asked to do it.
+    pub asked: Option<Gesture>,
+    /// Whether it does what was asked for, or what is told before.
+    pub obeys: bool,
+    /// Whether it denies what is said next: `refuses to`.
+    pub denies: bool,
+    /// Whether nothing is to be seen of it, and why.
+    pub background: Option<Background>,
+    /// Why it is not played.
+    pub unplayed: Option<String>,
+    /// Whether it says how somebody moves, and no more than another phrase beside it: `walks`.
+    pub plain: bool,
+    /// Whether the robot comes to a place by it.
+    pub goes: bool,
+    /// Texts, each read so.
+    pub reads: Vec<String>,
+    /// What every one of them gives: a line of the form.
+    pub gives: String,
+    /// Texts of which none gives it.
+    pub not: Vec<String>,
+}
+
+/// A row of `places.toml`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceRow {
+    /// The class; none: a place that no map can hold.
+    pub class: Option<PlaceClass>,
+    /// Patterns of words.
+    pub phrases: Vec<String>,
+    /// Texts, each read so.
+    #[serde(default)]
+    pub reads: Vec<String>,
+    /// What every one of them gives.
+    #[serde(default)]
+    pub gives: String,
+    /// Texts of which none gives it.
+    #[serde(default)]
+    pub not: Vec<String>,
+}
+
+/// A row of `signs.toml`: what is said for a gesture.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SignRow {
+    /// The gesture.
+    pub says: Gesture,
+    /// Patterns.
+    pub phrases: Vec<String>,
+    /// Texts, each read so.
+    pub reads: Vec<String>,
+    /// What every one of them gives.
+    pub gives: String,
+    /// Texts of which none gives it.
+    #[serde(default)]
+    pub not: Vec<String>,
+}
+
+/// A row of `rewrites.toml`: words in place of others.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rewrite {
+    /// Its name.
+    pub id: String,
+    /// Patterns of words.
+    pub phrases: Vec<String>,
+    /// The words in their place.
+    pub becomes: String,
+    /// Texts, each read as `gives`.
+    pub reads: Vec<String>,
+    /// A text read the same way.
+    pub gives: String,
+    /// Texts read otherwise than `gives`.
+    #[serde(default)]
+    pub not: Vec<String>,
+}
+
+/// How much of a text a phrase makes background.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Extent {
+    /// Its own words.
+    Words,
+    /// From it to the next comma or other mark.
+    Clause,
+    /// The sentence in which it stands.
+    Sentence,
+}
+
+/// A row of `scopes.toml`: words that ask for nothing.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scope {
+    /// Its name.
+    pub id: String,
+    /// Why they ask for nothing.
+    pub reason: Background,
+    /// How much of the text it is about.
+    pub extent: Extent,
+    /// Whether it holds where a sentence begins, and nowhere else.
+    #[serde(default)]
+    pub first: bool,
+    /// Patterns of words.
+    pub phrases: Vec<String>,
+    /// Texts, each read as `gives`.
+    pub reads: Vec<String>,
+    /// A text without the words that ask for nothing.
+    pub gives: String,
+    /// Texts read otherwise than `gives`.
+    #[serde(default)]
+    pub not: Vec<String>,
+}

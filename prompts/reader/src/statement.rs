@@ -1,0 +1,373 @@
+//! Pass 5: clauses to statements. A statement says one thing, and of whom: first as the text names them, then as people
+//! ([`crate::discourse`]).
+//!
+//! ```text
+//! "the nurse steps aside when it is near" ─► The nurse: give_way when Near
+//! ```
+
+use std::ops::Range;
+
+use socrates_model::statement::Background;
+use socrates_model::{Gesture, PlaceClass, Relation, Side};
+
+use crate::clause::{At, Clause, Condition, Join, Predicate, Tie};
+use crate::lexicon::Lexicon;
+use crate::noun::{Head, Noun, Pick};
+use crate::rows::{Act, Cue, Frame};
+
+/// Why somebody begins or ends something.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reason<W> {
+    /// Whose: nobody where it is the robot's, or their own.
+    pub who: Option<W>,
+    /// What.
+    pub cue: Cue,
+    /// Which sign.
+    pub sign: Option<Gesture>,
+    /// How far, m; how long, s.
+    pub amount: Option<f64>,
+}
+
+/// What a statement says; `W` names people.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Says<W> {
+    /// Somebody is there.
+    Introduce(W),
+    /// How somebody stands to the robot's way.
+    Relate(W, Relation, Option<Side>),
+    /// They are a group.
+    Group(W),
+    /// How fast somebody walks, m/s.
+    Pace(W, f64),
+    /// Somebody does something, or does not.
+    Do(Deed<W>),
+    /// The robot makes a sign, to somebody.
+    RobotSays(Option<Gesture>, Option<W>),
+    /// Something happens to which people may react from then on.
+    Then(Reason<W>),
+    /// Where it happens.
+    Happens(PlaceClass),
+    /// Where the robot's way begins.
+    RobotStart(PlaceClass),
+    /// Where it ends.
+    RobotGoal(PlaceClass),
+    /// It asks for nothing.
+    Background(Background),
+    /// It is understood, and not played.
+    NotPlayed(String),
+    /// It is not understood.
+    NotRead,
+}
+
+/// What somebody does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deed<W> {
+    /// Who.
+    pub who: W,
+    /// What.
+    pub act: Act,
+    /// To whom, where it is not the robot.
+    pub whom: Option<W>,
+    /// Whether they do not.
+    pub not: bool,
+    /// All of these have to hold.
+    pub when: Vec<Reason<W>>,
+    /// It ends when this holds.
+    pub until: Vec<Reason<W>>,
+    /// For how long, s.
+    pub for_s: Option<f64>,
+    /// A sign made with it.
+    pub says: Option<Gesture>,
+    /// Whether it is what was asked for just before: `does so`.
+    pub obeys: bool,
+}
+
+/// A statement with where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement<W> {
+    /// Its tokens.
+    pub(crate) tokens: Range<usize>,
+    /// Whether a sentence begins with it.
+    pub(crate) first: bool,
+    /// Whether it tells of those named before a colon.
+    pub(crate) tells: bool,
+    /// What it says.
+    pub says: Says<W>,
+}
+
+/// People as a text names them.
+pub(crate) type Named = Vec<Noun>;
+
+/// The statements of a text.
+pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement<Named>> {
+    let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false };
+    for clause in clauses {
+        maker.first = clause.join == Join::Start;
+        maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
+        maker.clause(clause);
+    }
+    maker.found
+}
+
+struct Maker<'a> {
+    lexicon: &'a Lexicon,
+    found: Vec<Statement<Named>>,
+    first: bool,
+    tells: bool,
+}
+
+impl Maker<'_> {
+    fn say(&mut self, tokens: Range<usize>, says: Says<Named>) {
+        self.found.push(Statement { tokens, first: self.first, tells: self.tells, says });
+        self.first = false;
+    }
+
+    fn clause(&mut self, clause: &Clause) {
+        let mut when = Vec::new();
+        let mut until = Vec::new();
+        let mut turned = false;
+        let denied = clause.acts.iter().any(|act| act.not);
+        for condition in &clause.conditions {
+            match (self.reason(condition, &clause.subject), condition.tie) {
+                (Some(reason), Tie::When | Tie::While | Tie::After) => when.push(reason),
+                // `does not move until`: moves then.
+                (Some(reason), Tie::Until | Tie::Before | Tie::Unless) if denied => {
+                    when.push(reason);
+                    turned = true;
+                }
+                (Some(reason), Tie::Until) => until.push(reason),
+                (Some(_), Tie::Before | Tie::Unless) | (None, _) => self.beside(condition),
+            }
+        }
+        let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
+        self.places(clause, robot);
+        if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
+            self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
+        }
+        let whole = Whole { clause, when: &when, until: &until, turned };
+        for act in &clause.acts {
+            let Some(frame) = self.lexicon.frames.get(act.row) else { continue };
+            self.act(act, frame, &whole, robot);
+        }
+        if let Some(mps) = clause.pace_mps.filter(|_| !robot && !clause.subject.is_empty()) {
+            self.say(clause.tokens.clone(), Says::Pace(clause.subject.clone(), mps));
+        }
+        self.rest(clause);
+    }
+
+    /// A condition that is no reason: `while the other walks on` is a clause of its own.
+    fn beside(&mut self, condition: &Condition) {
+        let own = !condition.clause.subject.is_empty() && !condition.clause.acts.is_empty();
+        if matches!(condition.tie, Tie::While | Tie::When) && own {
+            self.clause(&condition.clause);
+        } else {
+            self.say(condition.clause.tokens.clone(), Says::NotRead);
+        }
+    }
+
+    /// Whether a noun phrase means the robot where it is a subject: `it sees the robot` does not.
+    fn is_robot(&self, noun: &Noun, clause: &Clause) -> bool {
+        let object = clause.acts.iter().any(|act| act.object.as_ref().is_some_and(|object| object.head == Head::Robot));
+        match noun.head {
+            Head::Robot => true,
+            Head::It => !object,
+            Head::He | Head::They | Head::Who | Head::Role(_) | Head::Bare => false,
+        }
+    }
+
+    fn act(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, robot: bool) {
+        let clause = whole.clause;
+        let tokens = act.tokens.clone();
+        if let Some(reason) = frame.background {
+            if !clause.subject.is_empty() && !robot {
+                self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
+            }
+            self.say(tokens, Says::Background(reason));
+            return;
+        }
+        if let Some(why) = frame.unplayed.as_ref().filter(|_| !act.not) {
+            self.say(tokens, Says::NotPlayed(why.clone()));
+            return;
+        }
+        let by_robot = if act.passive {
+            clause.agent.as_ref().map_or(frame.asks, Noun::may_be_robot)
+        } else {
+            robot
+        };
+        if by_robot {
+            let person = if act.passive {
+                Some(clause.subject.clone()).filter(|who| !who.is_empty() && !robot)
+            } else {
+                act.object.clone().filter(Noun::may_be_person).map(|noun| vec![noun])
+            };
+            self.robot(act, frame, whole, person);
+            return;
+        }
+        let (who, object) = if act.passive {
+            (clause.agent.iter().cloned().collect(), clause.subject.first().cloned())
+        } else {
+            (clause.subject.clone(), act.object.clone())
+        };
+        if who.is_empty() {
+            return;
+        }
+        let about_robot = object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Bare | Head::He | Head::Who));
+        if !about_robot && act.sign.is_none() {
+            let other = object.clone().map(|noun| vec![noun]);
+            self.with_somebody(act, frame, whole, who, other);
+            return;
+        }
+        self.person(act, frame, whole, who);
+    }
+
+    /// Somebody does something, to the robot or to nobody.
+    fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
+        let tokens = act.tokens.clone();
+        if let Some(relation) = frame.relate.filter(|_| !act.not) {
+            self.say(tokens.clone(), Says::Relate(who.clone(), relation, frame.side));
+        }
+        if frame.group {
+            self.say(tokens.clone(), Says::Group(who.clone()));
+        }
+        let does = frame.act.or_else(|| act.sign.map(|_| Act::Sign)).or_else(|| frame.obeys.then_some(Act::Navigate));
+        if let Some(does) = does {
+            let deed = whole.deed(who, does, act, frame);
+            self.say(tokens, Says::Do(deed));
+        } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
+            let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m };
+            self.say(tokens, Says::Then(reason));
+        } else if frame.asks {
+            self.say(tokens, Says::NotRead);
+        } else if frame.relate.is_none() && !frame.group {
+            self.say(tokens, Says::Introduce(who));
+        }
+    }
+
+    /// Somebody does something with somebody else: only following is played.
+    fn with_somebody(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named, other: Option<Named>) {
+        let tokens = act.tokens.clone();
+        if frame.act == Some(Act::Follow) {
+            let deed = Deed { whom: other, ..whole.deed(who, Act::Follow, act, frame) };
+            self.say(tokens, Says::Do(deed));
+            return;
+        }
+        self.say(tokens.clone(), Says::Introduce(who));
+        if let Some(other) = other {
+            self.say(tokens.clone(), Says::Introduce(other));
+        }
+        if !frame.plain {
+            self.say(tokens, Says::NotRead);
+        }
+    }
+
+    /// The robot does something.
+    fn robot(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, person: Option<Named>) {
+        let tokens = act.tokens.clone();
+        if frame.asks || act.sign.is_some() {
+            if !act.not {
+                self.say(tokens, Says::RobotSays(act.sign, person));
+            }
+            return;
+        }
+        let cue = frame.robot_cue.filter(|_| !act.not);
+        match (frame.robot_relate, person) {
+            (Some(relation), Some(person)) if !act.not => self.say(tokens.clone(), Says::Relate(person, relation, None)),
+            (_, Some(person)) => self.say(tokens.clone(), Says::Introduce(person)),
+            (_, None) => {}
+        }
+        if let Some(cue) = cue {
+            let amount = whole.clause.within_m.filter(|_| cue == Cue::Near);
+            self.say(tokens, Says::Then(Reason { who: None, cue, sign: None, amount }));
+        }
+    }
+
+    /// What a condition waits for.
+    fn reason(&self, condition: &Condition, subject: &[Noun]) -> Option<Reason<Named>> {
+        let clause = &condition.clause;
+        let none = Reason { who: None, cue: Cue::Near, sign: None, amount: clause.within_m };
+        let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
+        let own = clause.subject.is_empty() || clause.subject == subject;
+        for act in &clause.acts {
+            let frame = self.lexicon.frames.get(act.row)?;
+            let by_robot = if act.passive { clause.agent.as_ref().is_none_or(Noun::may_be_robot) } else { robot };
+            if frame.asks || act.sign.is_some() {
+                let who = if by_robot || own { None } else { Some(clause.subject.clone()) };
+                return Some(Reason { who, cue: Cue::Says, sign: act.sign, ..none });
+            }
+            let about = act.object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_)));
+            let cue = if by_robot { frame.robot_cue } else { frame.cue.filter(|_| about) };
+            if let Some(cue) = cue {
+                return Some(Reason { cue, ..none });
+            }
+        }
+        if let Some(secs) = clause.lasts_s.or(clause.after_s).filter(|_| clause.acts.is_empty()) {
+            return Some(Reason { cue: Cue::After, amount: Some(secs), ..none });
+        }
+        (clause.within_m.is_some() && clause.acts.is_empty()).then_some(none)
+    }
+
+    fn places(&mut self, clause: &Clause, robot: bool) {
+        let goes = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.goes);
+        let goes = robot && (clause.acts.iter().any(goes) || clause.acts.is_empty());
+        for At { class, to, from, token } in &clause.places {
+            let says = match class {
+                None => Says::NotPlayed("no map has such a place".to_owned()),
+                Some(class) if goes && *to => Says::RobotGoal(*class),
+                Some(class) if goes && *from => Says::RobotStart(*class),
+                Some(class) => Says::Happens(*class),
+            };
+            self.say(*token..token + 1, says);
+        }
+    }
+
+    fn rest(&mut self, clause: &Clause) {
+        for run in runs(&clause.looks) {
+            self.say(run, Says::Background(Background::Looks));
+        }
+        for run in runs(&clause.left) {
+            self.say(run, Says::NotRead);
+        }
+    }
+}
+
+/// A clause with what its conditions came to.
+struct Whole<'a> {
+    clause: &'a Clause,
+    when: &'a [Reason<Named>],
+    until: &'a [Reason<Named>],
+    /// Whether a denial and an `until` make an act that comes then.
+    turned: bool,
+}
+
+impl Whole<'_> {
+    fn deed(&self, who: Named, act: Act, said: &Predicate, frame: &Frame) -> Deed<Named> {
+        let clause = self.clause;
+        let mut when = self.when.to_vec();
+        if let Some(m) = clause.within_m {
+            match when.iter_mut().find(|reason| matches!(reason.cue, Cue::Near | Cue::Visible | Cue::Blocking)) {
+                Some(reason) => reason.amount = reason.amount.or(Some(m)),
+                None => when.push(Reason { who: None, cue: Cue::Near, sign: None, amount: Some(m) }),
+            }
+        }
+        if let Some(secs) = clause.after_s {
+            when.push(Reason { who: None, cue: Cue::After, sign: None, amount: Some(secs) });
+        }
+        let none = clause.subject.iter().all(|noun| noun.pick == Pick::None) && !clause.subject.is_empty();
+        let not = (said.not || none) && !self.turned;
+        let whom = None;
+        let until = self.until.to_vec();
+        Deed { who, act, whom, not, when, until, for_s: clause.lasts_s, says: said.sign, obeys: frame.obeys }
+    }
+}
+
+/// Numbers that follow each other, together.
+fn runs(places: &[usize]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for place in places {
+        match runs.last_mut() {
+            Some(last) if last.end == *place => last.end += 1,
+            Some(_) | None => runs.push(*place..place + 1),
+        }
+    }
+    runs
+}

@@ -1,0 +1,295 @@
+//! Pass 7: statements of people to a story, and the story as a form.
+
+use std::fmt;
+
+use socrates_model::form::{Deed as FormDeed, Form, FormGroup, FormHuman, Pace, PlaceWord, Step as FormStep, When};
+use socrates_model::{Gesture, PlaceClass, Relation, Side};
+
+use crate::discourse::{People, Told};
+use crate::rows::{Act, Cue};
+use crate::statement::{Deed, Reason, Says};
+
+/// Distances at which a reason holds of which the text gives none, m: seen, near, in the way. As the offline author's.
+const DISTANCES_M: [(Cue, f64); 3] = [(Cue::Visible, 5.0), (Cue::Near, 2.0), (Cue::Blocking, 1.5)];
+
+/// One step of somebody.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// All of these have to hold.
+    pub when: Vec<Reason<People>>,
+    /// What is done.
+    pub act: Act,
+    /// To whom, where it is not the robot.
+    pub whom: Option<usize>,
+    /// It ends when these hold.
+    pub until: Vec<Reason<People>>,
+    /// For how long, s.
+    pub for_s: Option<f64>,
+    /// A sign made with it.
+    pub says: Option<Gesture>,
+}
+
+/// One person as read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Person {
+    /// Role word.
+    pub role: String,
+    /// How they stand to the robot's way, where that is said.
+    pub relation: Option<Relation>,
+    /// On which side.
+    pub side: Option<Side>,
+    /// How fast they walk, m/s.
+    pub pace_mps: Option<f64>,
+    /// Number of their group, from 1.
+    pub group: Option<usize>,
+    /// What they do, in the order of the text.
+    pub steps: Vec<Step>,
+}
+
+/// Everything that a text states.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Story {
+    /// Everybody, in the order in which they are named.
+    pub people: Vec<Person>,
+    /// Where people meet the robot.
+    pub place: Option<PlaceClass>,
+    /// Where the robot's way begins.
+    pub robot_start: Option<PlaceClass>,
+    /// Where it ends.
+    pub robot_goal: Option<PlaceClass>,
+    /// Signs that the robot makes.
+    pub robot_says: Vec<Gesture>,
+}
+
+/// Tells the story that statements make.
+pub(crate) fn story(told: &Told) -> Story {
+    let people = told.roles.iter().map(|role| Person { role: role.clone(), ..Person::default() }).collect();
+    let mut story = Story { people, ..Story::default() };
+    let mut groups = 0;
+    for statement in &told.statements {
+        match &statement.says {
+            Says::Relate(who, relation, side) => story.each(who, |person| {
+                // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
+                let stands = person.relation.is_none() || person.relation == Some(Relation::Static);
+                if stands {
+                    person.relation = Some(*relation);
+                }
+                person.side = side.or(person.side);
+            }),
+            Says::Group(who) if who.len() > 1 => {
+                groups += 1;
+                story.each(who, |person| person.group = Some(groups));
+            }
+            Says::Pace(who, mps) => story.each(who, |person| person.pace_mps = Some(*mps)),
+            Says::Do(deed) => story.does(deed),
+            Says::RobotSays(Some(gesture), _) => story.robot_sign(*gesture),
+            Says::Happens(class) => story.place = story.place.or(Some(*class)),
+            Says::RobotStart(class) => story.robot_start = Some(*class),
+            Says::RobotGoal(class) => story.robot_goal = Some(*class),
+            Says::Group(_)
+            | Says::RobotSays(None, _)
+            | Says::Introduce(_)
+            | Says::Then(_)
+            | Says::Background(_)
+            | Says::NotPlayed(_)
+            | Says::NotRead => {}
+        }
+    }
+    story
+}
+
+impl Story {
+    fn each(&mut self, who: &[usize], mut change: impl FnMut(&mut Person)) {
+        for number in who {
+            if let Some(person) = self.people.get_mut(*number) {
+                change(person);
+            }
+        }
+    }
+
+    fn robot_sign(&mut self, gesture: Gesture) {
+        if !self.robot_says.contains(&gesture) {
+            self.robot_says.push(gesture);
+        }
+    }
+
+    fn does(&mut self, deed: &Deed<People>) {
+        let signs = deed.when.iter().chain(&deed.until);
+        let by_robot: Vec<Gesture> =
+            signs.filter(|reason| reason.cue == Cue::Says && reason.who.is_none()).filter_map(|reason| reason.sign).collect();
+        for gesture in by_robot {
+            self.robot_sign(gesture);
+        }
+        if deed.not {
+            return;
+        }
+        let whom = deed.whom.as_ref().and_then(|whom| whom.first().copied());
+        let step = Step {
+            when: deed.when.clone(),
+            act: deed.act,
+            whom,
+            until: deed.until.clone(),
+            for_s: deed.for_s,
+            says: deed.says,
+        };
+        self.each(&deed.who, |person| {
+            if !person.steps.contains(&step) {
+                person.steps.push(step.clone());
+            }
+        });
+    }
+
+    /// The story as a form. How somebody stands to the robot's way, where the text leaves it open, is `frontal`, or `static` for
+    /// somebody who blocks; places are classes.
+    #[must_use]
+    pub fn form(&self) -> Form {
+        let mut form = Form::default();
+        for person in &self.people {
+            let human = self.human(person);
+            match form.humans.last_mut() {
+                Some(last) if FormHuman { count: 1, ..last.clone() } == human => last.count += 1,
+                Some(_) | None => form.humans.push(human),
+            }
+        }
+        let groups: std::collections::BTreeSet<String> =
+            form.humans.iter().filter_map(|human| human.group.clone()).collect();
+        form.groups = groups.into_iter().map(|id| FormGroup { id, formation: None }).collect();
+        form
+    }
+
+    fn human(&self, person: &Person) -> FormHuman {
+        let blocks = person.steps.iter().any(|step| step.act == Act::Block);
+        let open = if blocks { Relation::Static } else { Relation::Frontal };
+        let (standing, steps): (Vec<&Step>, Vec<&Step>) =
+            person.steps.iter().partition(|step| step.when.is_empty() && step.act == Act::Follow && step.for_s.is_none());
+        FormHuman {
+            id: None,
+            count: 1,
+            role: Some(person.role.clone()).filter(|role| role != "person"),
+            relation: person.relation.unwrap_or(open),
+            side: person.side,
+            facing: None,
+            place: self.place.map(PlaceWord::Class),
+            start: None,
+            goal: None,
+            pace: person.pace_mps.map(Pace::Mps),
+            group: person.group.map(|group| format!("group_{group}")),
+            does: steps.into_iter().map(form_step).collect(),
+            reacts: standing.into_iter().map(|step| FormStep { when: vec![When::Always], ..form_step(step) }).collect(),
+        }
+    }
+}
+
+fn form_step(step: &Step) -> FormStep {
+    let act = match (step.act, step.whom) {
+        (Act::GiveWay, _) => Some(FormDeed::GiveWay),
+        (Act::Block, _) => Some(FormDeed::Block),
+        (Act::Look, _) => Some(FormDeed::LookAtRobot),
+        (Act::StandStill, _) => Some(FormDeed::StandStill),
+        (Act::RunAway, _) => Some(FormDeed::RunAway),
+        (Act::Approach, _) => Some(FormDeed::Approach),
+        (Act::Follow, Some(whom)) => Some(FormDeed::FollowHuman(name(whom))),
+        (Act::Follow, None) => Some(FormDeed::FollowRobot),
+        (Act::Navigate, _) => Some(FormDeed::Navigate),
+        (Act::TurnBack, _) => Some(FormDeed::TurnBack),
+        (Act::Sign, _) => None,
+    };
+    FormStep {
+        when: step.when.iter().map(form_when).collect(),
+        act,
+        for_s: step.for_s,
+        until: step.until.iter().map(form_when).collect(),
+        say: step.says,
+        ..FormStep::default()
+    }
+}
+
+fn form_when(reason: &Reason<People>) -> When {
+    let distance = DISTANCES_M.iter().find(|(cue, _)| *cue == reason.cue).map_or(0.0, |(_, m)| *m);
+    let amount = reason.amount.unwrap_or(distance);
+    let speaker = reason.who.as_ref().and_then(|who| who.first().copied());
+    match (reason.cue, reason.sign, speaker) {
+        (Cue::Visible, ..) => When::RobotVisible(amount),
+        (Cue::Near, ..) => When::RobotNear(amount),
+        (Cue::Blocking, ..) => When::RobotBlocking(amount),
+        (Cue::Moving, ..) => When::RobotMoving,
+        (Cue::Stopped, ..) => When::RobotStopped,
+        (Cue::Passed, ..) => When::RobotPassed,
+        (Cue::Says, sign, Some(who)) => When::HumanSays(name(who), sign.unwrap_or(Gesture::ExcuseMe)),
+        (Cue::Says, sign, None) => When::RobotSays(sign.unwrap_or(Gesture::ExcuseMe)),
+        (Cue::Encounter, ..) => When::AtEncounter,
+        (Cue::Goal, ..) => When::GoalReached,
+        (Cue::After, ..) => When::AfterSecs(amount),
+    }
+}
+
+/// `human_1` of the first.
+fn name(number: usize) -> String {
+    format!("human_{}", number + 1)
+}
+
+impl fmt::Display for Story {
+    /// One fact a line: `human_1: give_way when says EXCUSE_ME`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = self.place {
+            writeln!(f, "place: {place}")?;
+        }
+        for (what, class) in [("start", self.robot_start), ("goal", self.robot_goal)] {
+            if let Some(class) = class {
+                writeln!(f, "robot: {what} {class}")?;
+            }
+        }
+        for gesture in &self.robot_says {
+            writeln!(f, "robot: says {gesture}")?;
+        }
+        for (number, person) in self.people.iter().enumerate() {
+            let name = name(number);
+            writeln!(f, "{name}: {}", person.role)?;
+            if let Some(relation) = person.relation {
+                let side = person.side.map_or_else(String::new, |side| format!(" {}", side.name()));
+                writeln!(f, "{name}: {}{side}", relation.name())?;
+            }
+            if let Some(group) = person.group {
+                writeln!(f, "{name}: group {group}")?;
+            }
+            if let Some(mps) = person.pace_mps {
+                writeln!(f, "{name}: pace {mps}")?;
+            }
+            for step in &person.steps {
+                writeln!(f, "{name}: {step}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.whom {
+            Some(whom) => write!(f, "follow {}", name(whom))?,
+            None => f.write_str(self.act.name())?,
+        }
+        if let Some(gesture) = self.says {
+            write!(f, " {gesture}")?;
+        }
+        for (word, reasons) in [("when", &self.when), ("until", &self.until)] {
+            for reason in reasons {
+                write!(f, " {word} {reason}")?;
+            }
+        }
+        self.for_s.map_or(Ok(()), |secs| write!(f, " for {secs}"))
+    }
+}
+
+impl fmt::Display for Reason<People> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", format!("{:?}", self.cue).to_lowercase())?;
+        if let Some(who) = self.who.as_ref().and_then(|who| who.first()) {
+            write!(f, " {}", name(*who))?;
+        }
+        if let Some(sign) = self.sign {
+            write!(f, " {sign}")?;
+        }
+        self.amount.map_or(Ok(()), |amount| write!(f, " {amount}"))
+    }
+}

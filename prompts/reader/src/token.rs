@@ -1,0 +1,155 @@
+//! The one token type: a word, a number or a mark, with where it stands in the text. Tokens never change once made.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::Deserialize;
+
+/// What a word can be. A word may be of several sorts: `that` is definite and begins a relative clause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Sort {
+    // Words that stand for people and things.
+    Indefinite,
+    Definite,
+    Possessive,
+    He,
+    They,
+    It,
+    Every,
+    Nobody,
+    No,
+    Somebody,
+    Other,
+    Former,
+    Who,
+    // Words that join.
+    Be,
+    Do,
+    Have,
+    Modal,
+    Not,
+    And,
+    But,
+    Then,
+    When,
+    While,
+    Until,
+    Before,
+    After,
+    Unless,
+    Cause,
+    To,
+    Of,
+    By,
+    At,
+    From,
+    Later,
+    // Words with a meaning of their own.
+    Robot,
+    People,
+    Role,
+    Group,
+    Label,
+    Slow,
+    Brisk,
+    Looks,
+    Thing,
+    Fill,
+    Verb,
+}
+
+/// A set of sorts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Sorts(u64);
+
+impl Sorts {
+    pub(crate) const fn with(self, sort: Sort) -> Self {
+        Self(self.0 | 1 << sort as u64)
+    }
+
+    pub(crate) const fn has(self, sort: Sort) -> bool {
+        self.0 & (1 << sort as u64) != 0
+    }
+
+    pub(crate) const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+/// Marks that say something about how clauses stand to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mark {
+    Comma,
+    Stop,
+    Colon,
+    Dash,
+    Open,
+    Close,
+    Quote,
+    Arrow,
+}
+
+/// How a word is bent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Bent {
+    Base,
+    /// `stops`, `workers`.
+    S,
+    /// `stopping`.
+    Ing,
+    /// `stopped`, `seen`.
+    Ed,
+}
+
+/// What a token is.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Kind {
+    Word,
+    Number(f64),
+    Mark(Mark),
+}
+
+/// One token.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Token {
+    /// Where it stands, in bytes of the text. A word put in by a rewrite stands where the words stand that it replaces.
+    pub(crate) at: Range<usize>,
+    /// In lower case.
+    pub(crate) text: String,
+    /// In its base form.
+    pub(crate) lemma: String,
+    pub(crate) kind: Kind,
+    pub(crate) sorts: Sorts,
+    pub(crate) bent: Bent,
+}
+
+impl Token {
+    pub(crate) fn is(&self, sort: Sort) -> bool {
+        self.sorts.has(sort)
+    }
+
+    pub(crate) fn is_mark(&self, mark: Mark) -> bool {
+        self.kind == Kind::Mark(mark)
+    }
+
+    /// Whether it is a word or number.
+    pub(crate) const fn is_said(&self) -> bool {
+        !matches!(self.kind, Kind::Mark(_))
+    }
+
+    pub(crate) const fn number(&self) -> Option<f64> {
+        if let Kind::Number(number) = self.kind { Some(number) } else { None }
+    }
+}
+
+impl fmt::Display for Token {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.kind {
+            Kind::Word if self.text == self.lemma => f.write_str(&self.text),
+            Kind::Word => write!(f, "{}/{}", self.text, self.lemma),
+            Kind::Number(number) => write!(f, "#{number}"),
+            Kind::Mark(mark) => write!(f, "<{mark:?}>"),
+        }
+    }
+}
