@@ -84,6 +84,8 @@ pub(crate) struct Clause {
     /// Whose acts; of an ellipsis, those of the clause before. Empty where nobody was named yet.
     pub(crate) subject: Vec<Noun>,
     pub(crate) acts: Vec<Predicate>,
+    /// Others who are named beside: `with her son`.
+    pub(crate) also: Vec<Noun>,
     /// By whom, in the passive.
     pub(crate) agent: Option<Noun>,
     pub(crate) lasts_s: Option<f64>,
@@ -105,6 +107,7 @@ impl Clause {
             join,
             subject: Vec::new(),
             acts: Vec::new(),
+            also: Vec::new(),
             agent: None,
             lasts_s: None,
             after_s: None,
@@ -226,6 +229,8 @@ impl Parser<'_> {
             Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) => if matches!(join, Join::Colon) { join } else { Join::And },
             Is::Mark(Mark::Quote) => join,
             Is::Word if chunk.word(Sort::But) => Join::But,
+            // `while the other walks on` is a clause of its own.
+            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => Join::But,
             Is::Word if chunk.word(Sort::Then) && !chunk.word(Sort::Not) => Join::Then,
             Is::Word if chunk.word(Sort::And) || chunk.lemma == "or" || chunk.lemma == "nor" => match join {
                 Join::Then | Join::Colon => join,
@@ -292,7 +297,12 @@ impl Parser<'_> {
                     if self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::By)) && clause.acts.iter().any(|act| act.passive) {
                         clause.agent = Some(noun);
                     } else {
-                        clause.left.extend(noun.tokens);
+                        if !self.at.checked_sub(1).and_then(|at| self.chunks.get(at)).is_some_and(|before| before.word(Sort::With)) {
+                            clause.left.extend(noun.tokens.clone());
+                        }
+                        if names_somebody(&noun) {
+                            clause.also.push(noun);
+                        }
                     }
                     self.at += 1;
                 }
@@ -351,6 +361,9 @@ impl Parser<'_> {
             let and = self.peek().is_some_and(|chunk| chunk.word(Sort::And));
             let both = comma && self.ahead(1).is_some_and(|chunk| chunk.word(Sort::And));
             let skip = if both { 2 } else { 1 };
+            if self.beside(clause) {
+                continue;
+            }
             if !comma && !and {
                 return;
             }
@@ -363,6 +376,26 @@ impl Parser<'_> {
             clause.subject.push(noun);
             self.at += skip + 1;
         }
+    }
+
+    /// `Tom, a student, …`, `Anna and Ben (two interns)`: what somebody is, beside their name.
+    fn beside(&mut self, clause: &mut Clause) -> bool {
+        let marks = |chunk: Option<&Chunk>| matches!(chunk.map(|chunk| &chunk.is), Some(Is::Mark(Mark::Comma | Mark::Open | Mark::Close | Mark::Dash | Mark::Stop)) | None);
+        let Some(Is::Noun(noun)) = self.ahead(1).map(|chunk| &chunk.is) else { return false };
+        let Head::Role(role) = noun.head.clone() else { return false };
+        let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
+        let named = clause.subject.iter().all(|noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none());
+        if !named || count != clause.subject.len() || !marks(self.peek()) || !marks(self.ahead(2)) && !self.ahead(2).is_some_and(|next| next.word(Sort::Who)) {
+            return false;
+        }
+        for noun in &mut clause.subject {
+            noun.beside = Some(role.clone());
+        }
+        self.at += 2;
+        if self.peek().is_some_and(|next| next.is_mark(Mark::Comma) || next.is_mark(Mark::Close)) {
+            self.at += 1;
+        }
+        true
     }
 
     /// Whether the clause ends before the chunk.
@@ -506,6 +539,11 @@ impl Parser<'_> {
         }
         None
     }
+}
+
+/// Whether a noun phrase names people anew: not a pronoun, and not the robot.
+fn names_somebody(noun: &Noun) -> bool {
+    matches!(noun.head, Head::Role(_) | Head::Name(_) | Head::Bare)
 }
 
 /// Whether a word says nothing of its own.

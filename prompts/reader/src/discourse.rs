@@ -52,6 +52,8 @@ struct Cast {
     set: People,
     /// Who of them was picked since.
     picked: People,
+    /// People by their names.
+    names: BTreeMap<String, usize>,
     /// Who a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
     meant: BTreeMap<usize, People>,
     /// Those of whom a colon tells, who have no role yet.
@@ -188,6 +190,7 @@ impl Cast {
             },
             Head::Who => self.last.clone(),
             Head::Bare => self.bare(noun),
+            Head::Name(name) => self.named(noun, name),
             Head::Role(role) => self.role(noun, role),
         }
     }
@@ -216,6 +219,9 @@ impl Cast {
         };
         match self.picks(noun, &base) {
             Some(people) => people,
+            // `the five`, `both`, `none` of too few: as many as there are.
+            None if matches!(noun.pick, Pick::The | Pick::All | Pick::None | Pick::Others | Pick::Former) && noun.ordinal.is_none() => base,
+            None if noun.of.is_some() => base,
             None => self.new_people(noun, "person"),
         }
     }
@@ -286,6 +292,29 @@ impl Cast {
         }
     }
 
+    /// Somebody by name, who may have a role beside it.
+    fn named(&mut self, noun: &Noun, name: &str) -> People {
+        let known = self.names.get(name).copied();
+        let person = match known {
+            Some(person) => person,
+            None => {
+                let role = noun.beside.clone().unwrap_or_else(|| "person".to_owned());
+                // Those of whom a colon tells: `two interns: Anna and Ben`.
+                let unnamed = if self.tells && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
+                let person = unnamed.unwrap_or(self.roles.len());
+                if unnamed.is_none() {
+                    self.roles.push(role);
+                }
+                self.names.insert(name.to_owned(), person);
+                person
+            }
+        };
+        if let (Some(role), Some(own)) = (&noun.beside, self.roles.get_mut(person)) {
+            own.clone_from(role);
+        }
+        vec![person]
+    }
+
     fn new_people(&mut self, noun: &Noun, role: &str) -> People {
         let count = match noun.count {
             Some(count) => usize::try_from(count).unwrap_or(MOST).min(MOST),
@@ -297,7 +326,7 @@ impl Cast {
         let count = if noun.ordinal.is_some() && noun.count.is_none() { 1 } else { count };
         self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
         let people: People = (first..first + count).collect();
-        if ANYBODY.contains(&role) && count > 1 {
+        if count > 1 {
             self.unnamed.clone_from(&people);
         }
         if count == 1 && !self.set.is_empty() && noun.pick == Pick::Another {

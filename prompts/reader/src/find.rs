@@ -38,16 +38,18 @@ pub(crate) fn longest(chunks: &[Chunk], at: usize, patterns: &Patterns) -> Optio
         Is::Amount(_) => (AMOUNT, AMOUNT),
         Is::Word | Is::Place(_) => (first.lemma.as_str(), first.text.as_str()),
     };
-    let passive = first.bent == Bent::Ed;
+    let be = |back: usize| at.checked_sub(back).and_then(|before| chunks.get(before)).is_some_and(|before| before.word(Sort::Be));
+    let by = chunks.get(at + 1).is_some_and(|next| next.word(Sort::By));
+    let passive = first.bent == Bent::Ed && (by || be(1) || be(2));
     let of_lemma = patterns.beginning(lemma);
     let of_text = patterns.beginning(text).filter(|_| text != lemma);
     of_lemma
         .chain(of_text)
         .filter_map(|pattern| {
-            let active = matched(chunks, at, pattern, false);
-            active.or_else(|| if passive { matched(chunks, at, pattern, true) } else { None })
+            let in_passive = if passive { matched(chunks, at, pattern, true) } else { None };
+            in_passive.or_else(|| matched(chunks, at, pattern, false))
         })
-        .max_by_key(|found| (found.end - found.between.len(), !found.passive, std::cmp::Reverse(found.row)))
+        .max_by_key(|found| (found.end - found.between.len(), found.passive, std::cmp::Reverse(found.row)))
 }
 
 fn matched(chunks: &[Chunk], at: usize, pattern: &Pattern, passive: bool) -> Option<Found> {
@@ -107,6 +109,7 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
             found.object = Some(noun.clone());
             true
         }
+        (Part::Somebody, Is::Noun(_)) => true,
         (Part::Whose, Is::Whose(noun)) => {
             found.owner = Some(noun.clone());
             true

@@ -6,7 +6,7 @@
 
 use unicode_segmentation::UnicodeSegmentation as _;
 
-use crate::token::{Bent, Kind, Mark, Token};
+use crate::token::{Bent, Kind, Mark, Sort, Token};
 use crate::words::Words;
 
 /// What stands for what it is short of: the rest of a word after its apostrophe.
@@ -86,11 +86,16 @@ fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
                 kind: Kind::Word,
                 sorts: crate::token::Sorts::default(),
                 bent: Bent::Base,
+                capital: false,
             });
             return;
         }
         _ => return,
     };
+    // `Dr. Meyer` is one sentence.
+    if mark == Mark::Stop && piece == "." && tokens.last().is_some_and(|last| last.is(Sort::Title)) {
+        return;
+    }
     // `...` and a line's end after a full stop are one.
     if mark == Mark::Stop && tokens.last().is_none_or(|last| last.is_mark(Mark::Stop)) {
         return;
@@ -103,6 +108,7 @@ fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
         kind,
         sorts: crate::token::Sorts::default(),
         bent: Bent::Base,
+        capital: false,
     });
 }
 
@@ -120,7 +126,8 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
             sorts = words.sorts(&lemma);
         }
     }
-    Token { at, text, lemma, kind, sorts, bent }
+    let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase) && piece.len() > 1;
+    Token { at, text, lemma, kind, sorts, bent, capital }
 }
 
 /// The known word of which another is a slip of the pen: two letters swapped, or one letter doubled or lost.

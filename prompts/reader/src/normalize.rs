@@ -42,9 +42,13 @@ fn longest(tokens: &[Token], at: usize, patterns: &Patterns) -> Option<(usize, u
 pub(crate) fn end_of(tokens: &[Token], at: usize, pattern: &Pattern) -> Option<usize> {
     let mut here = at;
     for (number, slot) in pattern.slots.iter().enumerate() {
-        let Part::Word(words) = &slot.part else { return None };
         let fits = |token: Option<&Token>| {
-            token.is_some_and(|token| token.is_said() && (words.contains(&token.lemma) || words.contains(&token.text)))
+            token.is_some_and(|token| match &slot.part {
+                Part::Word(words) => token.is_said() && (words.contains(&token.lemma) || words.contains(&token.text)),
+                // Among words alone an amount is a number, or the letter of a list.
+                Part::Amount => token.number().is_some() || token.text.len() == 1 && token.is_said(),
+                Part::Anybody | Part::Robot | Part::Person | Part::Somebody | Part::Whose | Part::Place => false,
+            })
         };
         let article = |token: Option<&Token>| {
             token.is_some_and(|token| token.is(Sort::Indefinite) || token.is(Sort::Definite) && !token.is(Sort::Who))

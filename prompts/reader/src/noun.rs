@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::lexicon::Lexicon;
-use crate::token::{Bent, Kind, Sort, Token};
+use crate::token::{Bent, Kind, Mark, Sort, Token};
 
 /// What a noun phrase is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,6 +20,8 @@ pub(crate) enum Head {
     Who,
     /// A role word, in its base form.
     Role(String),
+    /// Somebody by name.
+    Name(String),
     /// A number, an ordinal or `others` without a noun.
     Bare,
 }
@@ -60,6 +62,8 @@ pub(crate) struct Noun {
     pub(crate) group: bool,
     /// How fast they walk, where a word before the role says it, m/s.
     pub(crate) pace_mps: Option<f64>,
+    /// What they are, where that is put beside their name: `Tom, a student`.
+    pub(crate) beside: Option<String>,
     /// Of whom: `one of the workers`.
     pub(crate) of: Option<Box<Noun>>,
     /// The tokens of it.
@@ -76,6 +80,7 @@ impl Noun {
             several: false,
             group: false,
             pace_mps: None,
+            beside: None,
             of: None,
             tokens,
         }
@@ -102,7 +107,7 @@ impl fmt::Display for Noun {
             write!(f, " #{ordinal}")?;
         }
         match &self.head {
-            Head::Role(role) => write!(f, " {role}")?,
+            Head::Role(role) | Head::Name(role) => write!(f, " {role}")?,
             head => write!(f, " {head:?}")?,
         }
         if self.several {
@@ -118,6 +123,10 @@ pub(crate) const SLOW_MPS: f64 = 0.6;
 pub(crate) const BRISK_MPS: f64 = 1.5;
 /// So many words may stand between an article and its noun.
 const MODIFIERS: usize = 5;
+
+fn token_role(head: &Head) -> String {
+    if let Head::Role(role) = head { role.clone() } else { String::new() }
+}
 
 struct Reader<'a> {
     tokens: &'a [Token],
@@ -146,7 +155,12 @@ impl Reader<'_> {
 
     fn noun(&mut self) -> Option<Noun> {
         let start = self.at;
-        if let Some(noun) = self.pronoun() {
+        // `each other` is nobody of their own.
+        let next_is = |sort| self.tokens.get(self.at + 1).is_some_and(|next| next.is(sort));
+        if self.peek()?.is(Sort::Every) && next_is(Sort::Other) {
+            return None;
+        }
+        if let Some(noun) = self.pronoun().or_else(|| self.name()) {
             return Some(noun);
         }
         let mut noun = Noun::new(Head::Bare, start..start);
@@ -189,6 +203,32 @@ impl Reader<'_> {
             noun.pick = Pick::Some;
         }
         self.at += 1;
+        Some(noun)
+    }
+
+    /// `Tom`, `Mrs. Whitcombe`: a word with a capital that nobody knows.
+    fn name(&mut self) -> Option<Noun> {
+        let title = self.peek().filter(|token| token.is(Sort::Title));
+        let role = title.and_then(|title| (title.lemma == "doctor").then(|| title.lemma.clone()));
+        let at = self.at + usize::from(title.is_some());
+        let token = self.tokens.get(at)?;
+        let known = |token: &Token| !token.capital || !token.sorts.is_empty() || token.lemma != token.text;
+        if known(token) {
+            return None;
+        }
+        // Where a sentence begins, every word has a capital: a name is followed by a verb, or by a mark.
+        let begins = at == 0 || self.tokens.get(at - 1).is_some_and(|before| !before.is_said());
+        let goes_on = |next: &Token| {
+            let sorts = [Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::And, Sort::Who];
+            sorts.iter().any(|sort| next.is(*sort)) || next.is(Sort::Verb) && next.bent == Bent::S || next.is_mark(Mark::Comma) || next.is_mark(Mark::Open) || next.text == crate::lex::OWNS
+        };
+        if begins && title.is_none() && !self.tokens.get(at + 1).is_some_and(goes_on) {
+            return None;
+        }
+        let mut noun = Noun::new(Head::Name(token.text.clone()), self.at..at + 1);
+        noun.pick = Pick::The;
+        noun.beside = role;
+        self.at = at + 1;
         Some(noun)
     }
 
@@ -287,6 +327,11 @@ impl Reader<'_> {
                 noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
                 self.at += 1;
+                // `nurse Agnes`
+                if !noun.several && let Some(name) = self.name() && let Head::Name(own) = name.head {
+                    noun.beside = Some(token_role(&noun.head));
+                    noun.head = Head::Name(own);
+                }
                 return true;
             }
             if token.is(Sort::Group) && (told || next.is_some_and(|next| next.is(Sort::Of))) {

@@ -7,6 +7,7 @@
 //! | `<go>` | a word of this class |
 //! | `aside?` | may be missing |
 //! | `@`, `@robot`, `@person` | a noun phrase: anybody, the robot (or a pronoun), somebody (or a pronoun) |
+//! | `~` | a noun phrase that is nobody's object: `stays where he is` |
 //! | `@'s` | a possessor: `the robot's`, `its`, `their` |
 //! | `&` | a place |
 //! | `#` | a distance or time |
@@ -23,6 +24,8 @@ pub(crate) enum Part {
     Anybody,
     Robot,
     Person,
+    /// Taken, and not kept.
+    Somebody,
     Whose,
     Place,
     Amount,
@@ -112,6 +115,7 @@ fn slot(written: &str, classes: &Classes) -> Option<Slot> {
         "@" => Part::Anybody,
         "@robot" => Part::Robot,
         "@person" => Part::Person,
+        "~" => Part::Somebody,
         "@'s" => Part::Whose,
         "&" => Part::Place,
         AMOUNT => Part::Amount,

@@ -123,6 +123,11 @@ impl Maker<'_> {
     }
 
     fn clause(&mut self, clause: &Clause) {
+        // `a visitor and the robot come towards each other`: said of the visitor.
+        let people: Vec<Noun> = clause.subject.iter().filter(|noun| noun.may_be_person() && noun.head != Head::It).cloned().collect();
+        let mixed = !people.is_empty() && people.len() < clause.subject.len();
+        let of_people = mixed.then(|| Clause { subject: people, ..clause.clone() });
+        let clause = of_people.as_ref().unwrap_or(clause);
         let mut when = Vec::new();
         let mut until = Vec::new();
         let mut turned = false;
@@ -149,6 +154,9 @@ impl Maker<'_> {
             let Some(frame) = self.lexicon.frames.get(act.row) else { continue };
             self.act(act, frame, &whole, robot);
         }
+        if !clause.also.is_empty() {
+            self.say(clause.tokens.clone(), Says::Introduce(clause.also.clone()));
+        }
         if let Some(mps) = clause.pace_mps.filter(|_| !robot && !clause.subject.is_empty()) {
             self.say(clause.tokens.clone(), Says::Pace(clause.subject.clone(), mps));
         }
@@ -171,7 +179,7 @@ impl Maker<'_> {
         match noun.head {
             Head::Robot => true,
             Head::It => !object,
-            Head::He | Head::They | Head::Who | Head::Role(_) | Head::Bare => false,
+            Head::He | Head::They | Head::Who | Head::Role(_) | Head::Name(_) | Head::Bare => false,
         }
     }
 
@@ -211,7 +219,7 @@ impl Maker<'_> {
         if who.is_empty() {
             return;
         }
-        let about_robot = object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Bare | Head::He | Head::Who));
+        let about_robot = object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::Who));
         if !about_robot && act.sign.is_none() {
             let other = object.clone().map(|noun| vec![noun]);
             self.with_somebody(act, frame, whole, who, other);
@@ -294,7 +302,7 @@ impl Maker<'_> {
                 let who = if by_robot || own { None } else { Some(clause.subject.clone()) };
                 return Some(Reason { who, cue: Cue::Says, sign: act.sign, ..none });
             }
-            let about = act.object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_)));
+            let about = act.object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_)));
             let cue = if by_robot { frame.robot_cue } else { frame.cue.filter(|_| about) };
             if let Some(cue) = cue {
                 return Some(Reason { cue, ..none });

@@ -45,6 +45,8 @@ pub(crate) enum Sort {
     At,
     From,
     Later,
+    Title,
+    With,
     // Words with a meaning of their own.
     Robot,
     People,
@@ -122,6 +124,8 @@ pub(crate) struct Token {
     pub(crate) kind: Kind,
     pub(crate) sorts: Sorts,
     pub(crate) bent: Bent,
+    /// Whether it is written as a name: with a capital, and not all of it capitals.
+    pub(crate) capital: bool,
 }
 
 impl Token {
