@@ -167,8 +167,10 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
     let longest = |start: usize| {
         let first = tokens.get(start).filter(|token| token.is_said())?;
         let patterns = &lexicon.place_patterns;
+        let of_text = patterns.beginning(&first.text).filter(|_| first.text != first.lemma);
         patterns
             .beginning(&first.lemma)
+            .chain(of_text)
             .filter_map(|pattern| Some((end_of(tokens, start, pattern)?, pattern.row)))
             .max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))
     };

@@ -280,6 +280,10 @@ impl Parser<'_> {
         let mut not = self.denied && join == Join::And && self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.lemma == "or" || before.lemma == "nor");
         let mut own = self.relative(&mut clause);
         while let Some(chunk) = self.peek() {
+            if inner && chunk.is_mark(Mark::Comma) && clause.is_bare() && !clause.subject.is_empty() && self.ahead(1).is_some_and(|next| next.word(Sort::Who)) {
+                self.aside();
+                continue;
+            }
             if self.ends(&clause, inner) {
                 break;
             }
@@ -290,7 +294,16 @@ impl Parser<'_> {
                     clause.subject.push(noun);
                     self.at += 1;
                     self.subject_list(&mut clause);
+                    Self::names(&mut clause);
                     own = true;
+                }
+                // `he is one of our pickers`
+                Is::Noun(noun) if clause.acts.is_empty() && self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::Be) || before.text == crate::lex::OWNS) && role_of(noun).is_some() => {
+                    let role = role_of(noun);
+                    for noun in &mut clause.subject {
+                        noun.beside.clone_from(&role);
+                    }
+                    self.at += 1;
                 }
                 Is::Noun(noun) => {
                     let noun = noun.clone();
@@ -345,6 +358,18 @@ impl Parser<'_> {
         clause
     }
 
+    /// A relative clause between commas, within a condition: a clause of its own.
+    fn aside(&mut self) {
+        self.at += 1;
+        let own = self.subject.clone();
+        let clause = self.clause(Join::And, true);
+        self.subject = own;
+        self.found.push(clause);
+        if self.peek().is_some_and(|next| next.is_mark(Mark::Comma)) {
+            self.at += 1;
+        }
+    }
+
     /// `who …`: of whoever was named last.
     fn relative(&mut self, clause: &mut Clause) -> bool {
         let who = self.peek().filter(|chunk| chunk.word(Sort::Who)).map(|chunk| chunk.tokens.clone());
@@ -378,14 +403,31 @@ impl Parser<'_> {
         }
     }
 
+    /// `two colleagues, Ben and Carla`: the names of those before them.
+    fn names(clause: &mut Clause) {
+        let Some((first, rest)) = clause.subject.split_first() else { return };
+        let all = rest.iter().filter_map(|noun| if let Head::Name(name) = &noun.head { Some(name.clone()) } else { None });
+        let all: Vec<String> = all.collect();
+        let count = usize::try_from(first.count.unwrap_or(1)).unwrap_or(1);
+        if !all.is_empty() && all.len() == rest.len() && all.len() == count && matches!(first.head, Head::Role(_)) {
+            let first = Noun { names: all, ..first.clone() };
+            clause.subject = vec![first];
+        }
+    }
+
     /// `Tom, a student, …`, `Anna and Ben (two interns)`: what somebody is, beside their name.
     fn beside(&mut self, clause: &mut Clause) -> bool {
         let marks = |chunk: Option<&Chunk>| matches!(chunk.map(|chunk| &chunk.is), Some(Is::Mark(Mark::Comma | Mark::Open | Mark::Close | Mark::Dash | Mark::Stop)) | None);
         let Some(Is::Noun(noun)) = self.ahead(1).map(|chunk| &chunk.is) else { return false };
         let Head::Role(role) = noun.head.clone() else { return false };
         let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
-        let named = clause.subject.iter().all(|noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none());
-        if !named || count != clause.subject.len() || !marks(self.peek()) || !marks(self.ahead(2)) && !self.ahead(2).is_some_and(|next| next.word(Sort::Who)) {
+        let label = |noun: &Noun| noun.ordinal.is_some() && matches!(noun.head, Head::Name(_));
+        let named = |noun: &Noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none() || label(noun) || noun.generic;
+        let acts = |next: &Chunk| next.word(Sort::Verb) && next.bent == Bent::S || next.word(Sort::Be) || next.word(Sort::And) || next.word(Sort::Modal);
+        if !clause.subject.iter().all(named) || count != clause.subject.len() && !clause.subject.iter().all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1)))) || !marks(self.peek()) || self.ahead(2).is_some_and(acts) {
+            return false;
+        }
+        if count != clause.subject.len() && clause.subject.iter().any(|noun| noun.several && noun.count.is_none_or(|own| usize::try_from(own) != Ok(count))) {
             return false;
         }
         for noun in &mut clause.subject {
@@ -452,7 +494,13 @@ impl Parser<'_> {
             self.predicate(found, not, clause);
             return;
         }
-        if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
+        let obeys = clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
+        if chunk.word(Sort::Not) && obeys {
+            // `he does not`
+            if let Some(last) = clause.acts.last_mut() {
+                last.not = !last.not;
+            }
+        } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
             *not = true;
         } else if chunk.word(Sort::Slow) {
             clause.pace_mps = Some(SLOW_MPS);
@@ -538,6 +586,15 @@ impl Parser<'_> {
             at += 1;
         }
         None
+    }
+}
+
+/// The role of which a noun phrase tells: `one of our pickers`.
+fn role_of(noun: &Noun) -> Option<String> {
+    match (&noun.head, &noun.of) {
+        (Head::Role(role), _) if !noun.generic => Some(role.clone()),
+        (Head::Bare, Some(of)) => role_of(of),
+        _ => None,
     }
 }
 

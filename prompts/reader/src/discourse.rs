@@ -22,7 +22,7 @@ pub(crate) struct Told {
 }
 
 /// Words that mean anybody.
-const ANYBODY: &[&str] = &["person", "people", "human", "pedestrian", "one", "individual", "participant"];
+const ANYBODY: &[&str] = &["person", "people", "human", "pedestrian", "individual", "participant", "actor", "agent", "somebody"];
 /// How many several people are of whom no number is said.
 const SEVERAL: usize = 2;
 /// No phrase means more people than this.
@@ -153,6 +153,7 @@ impl Cast {
             let known = self.meant.get(&noun.tokens.start).cloned();
             fresh |= known.is_none();
             let meant = known.unwrap_or_else(|| self.meant(noun));
+            self.tell(noun, &meant);
             self.meant.insert(noun.tokens.start, meant.clone());
             for person in meant {
                 if !all.contains(&person) {
@@ -168,6 +169,19 @@ impl Cast {
             self.last.clone_from(&all);
         }
         all
+    }
+
+    /// What people are called, and what they are, where that is told beside them.
+    fn tell(&mut self, noun: &Noun, people: &[usize]) {
+        for (name, person) in noun.names.iter().zip(people) {
+            self.names.insert(name.clone(), *person);
+        }
+        let Some(role) = &noun.beside else { return };
+        for person in people {
+            if let Some(own) = self.roles.get_mut(*person).filter(|own| ANYBODY.contains(&own.as_str())) {
+                own.clone_from(role);
+            }
+        }
     }
 
     fn is_part_of_set(&self, people: &[usize]) -> bool {
@@ -275,6 +289,8 @@ impl Cast {
         };
         let found = match noun.pick {
             Pick::Some | Pick::Another => None,
+            // `the boys`, of whom nobody was called so: those of whom was spoken.
+            Pick::The | Pick::All if known.is_empty() && noun.several && self.set.len() >= SEVERAL => Some(self.set.clone()),
             _ if known.is_empty() => None,
             Pick::The | Pick::Plain if noun.ordinal.is_none() && noun.count.is_none() && !noun.several => {
                 let recent = self.last.iter().rev().find(|person| known.contains(person)).copied();
@@ -301,18 +317,27 @@ impl Cast {
                 let role = noun.beside.clone().unwrap_or_else(|| "person".to_owned());
                 // Those of whom a colon tells: `two interns: Anna and Ben`.
                 let unnamed = if self.tells && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
-                let person = unnamed.unwrap_or(self.roles.len());
-                if unnamed.is_none() {
+                let person = unnamed.or_else(|| self.numbered(noun)).unwrap_or(self.roles.len());
+                if person == self.roles.len() {
                     self.roles.push(role);
                 }
                 self.names.insert(name.to_owned(), person);
+                if let Some((_, label)) = name.rsplit_once(' ') {
+                    self.names.insert(label.to_owned(), person);
+                }
                 person
             }
         };
-        if let (Some(role), Some(own)) = (&noun.beside, self.roles.get_mut(person)) {
-            own.clone_from(role);
-        }
         vec![person]
+    }
+
+    /// `worker 2` of several workers; `B` of several people.
+    fn numbered(&self, noun: &Noun) -> Option<usize> {
+        let number = usize::try_from(noun.ordinal?).ok()?;
+        let role = noun.beside.as_deref();
+        let all = self.everybody().into_iter().filter(|person| self.roles.get(*person).map(String::as_str) == role);
+        let all: People = all.filter(|person| !self.names.iter().any(|(name, named)| named == person && !name.ends_with(char::is_numeric))).collect();
+        if all.len() > 1 { all.get(number.checked_sub(1)?).copied() } else { None }
     }
 
     fn new_people(&mut self, noun: &Noun, role: &str) -> People {

@@ -59,7 +59,7 @@ fn matched(chunks: &[Chunk], at: usize, pattern: &Pattern, passive: bool) -> Opt
         let object = matches!(slot.part, Part::Anybody | Part::Robot | Part::Person);
         if passive && number == 1 {
             // The object stands before the verb: `is overtaken by`.
-            if !object || slot.optional {
+            if !object {
                 return None;
             }
             continue;

@@ -67,7 +67,7 @@ fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
     let mark = match piece.chars().next() {
         Some(',') => Mark::Comma,
         Some('.' | '!' | '?' | '\n' | '\r' | ';' | '…' | '|') => Mark::Stop,
-        Some(':') => Mark::Colon,
+        Some(':' | '=') => Mark::Colon,
         Some('–' | '—') => Mark::Dash,
         Some('-') if after.starts_with('>') => Mark::Arrow,
         Some('-') if apart || before.is_empty() || before.ends_with('\n') => Mark::Dash,
@@ -78,7 +78,7 @@ fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
         Some('\'' | '‘' | '’' | '`') if !before.ends_with(char::is_alphanumeric) || !after.starts_with(char::is_alphanumeric) => {
             Mark::Quote
         }
-        Some('<' | '+' | '&' | '@' | '#' | '=' | '/') => {
+        Some('<' | '+' | '&' | '@' | '#' | '/') => {
             tokens.push(Token {
                 at: start..start + piece.len(),
                 text: piece.to_owned(),
@@ -126,7 +126,7 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
             sorts = words.sorts(&lemma);
         }
     }
-    let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase) && piece.len() > 1;
+    let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase) ;
     Token { at, text, lemma, kind, sorts, bent, capital }
 }
 

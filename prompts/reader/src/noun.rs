@@ -64,6 +64,10 @@ pub(crate) struct Noun {
     pub(crate) pace_mps: Option<f64>,
     /// What they are, where that is put beside their name: `Tom, a student`.
     pub(crate) beside: Option<String>,
+    /// Their names, of several: `two colleagues, Ben and Carla`.
+    pub(crate) names: Vec<String>,
+    /// Whether the role is that of anybody: `person`.
+    pub(crate) generic: bool,
     /// Of whom: `one of the workers`.
     pub(crate) of: Option<Box<Noun>>,
     /// The tokens of it.
@@ -81,6 +85,8 @@ impl Noun {
             group: false,
             pace_mps: None,
             beside: None,
+            names: Vec::new(),
+            generic: false,
             of: None,
             tokens,
         }
@@ -212,15 +218,21 @@ impl Reader<'_> {
         let role = title.and_then(|title| (title.lemma == "doctor").then(|| title.lemma.clone()));
         let at = self.at + usize::from(title.is_some());
         let token = self.tokens.get(at)?;
-        let known = |token: &Token| !token.capital || !token.sorts.is_empty() || token.lemma != token.text;
-        if known(token) {
+        let next_acts = self.tokens.get(at + 1).is_some_and(|next| {
+            next.is(Sort::Be) || next.is(Sort::Do) || next.is(Sort::Modal) || next.is_mark(Mark::Colon) || next.is(Sort::And) || next.is(Sort::Verb) && next.bent == Bent::S
+        });
+        // `A walks ahead, B crosses`, `W1`, `ped2`.
+        let letter = token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h']) || token.capital && token.text == "a" && next_acts;
+        let digit = token.text.len() <= 4 && token.kind == Kind::Word && token.text.ends_with(|c: char| c.is_ascii_digit()) && token.sorts.is_empty();
+        let known = |token: &Token| !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2;
+        if known(token) && !letter && !digit {
             return None;
         }
         // Where a sentence begins, every word has a capital: a name is followed by a verb, or by a mark.
         let begins = at == 0 || self.tokens.get(at - 1).is_some_and(|before| !before.is_said());
         let goes_on = |next: &Token| {
             let sorts = [Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::And, Sort::Who];
-            sorts.iter().any(|sort| next.is(*sort)) || next.is(Sort::Verb) && next.bent == Bent::S || next.is_mark(Mark::Comma) || next.is_mark(Mark::Open) || next.text == crate::lex::OWNS
+            letter || digit || sorts.iter().any(|sort| next.is(*sort)) || next.is(Sort::Verb) && next.bent == Bent::S || next.is_mark(Mark::Comma) || next.is_mark(Mark::Open) || next.text == crate::lex::OWNS
         };
         if begins && title.is_none() && !self.tokens.get(at + 1).is_some_and(goes_on) {
             return None;
@@ -258,7 +270,9 @@ impl Reader<'_> {
         let start = self.at;
         while let Some(token) = self.peek() {
             let words = &self.lexicon.words;
-            if token.is(Sort::Other) {
+            if token.is(Sort::Other) && noun.pick == Pick::None {
+                // `no other people`
+            } else if token.is(Sort::Other) {
                 noun.pick = if noun.pick == Pick::Some { Pick::Another } else { Pick::Others };
             } else if token.is(Sort::Former) {
                 noun.pick = Pick::Former;
@@ -326,6 +340,7 @@ impl Reader<'_> {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
+                noun.generic = token.is(Sort::People);
                 self.at += 1;
                 // `nurse Agnes`
                 if !noun.several && let Some(name) = self.name() && let Head::Name(own) = name.head {
@@ -383,14 +398,15 @@ impl Reader<'_> {
         if self.tokens.get(self.at + 1).is_some_and(|next| self.is_unit(next)) {
             return;
         }
-        if let (Kind::Number(_), Some(number)) = (&token.kind, self.count()) {
-            (noun.ordinal, noun.pick) = (Some(number), Pick::The);
-            self.at += 1;
-        } else if let [letter @ b'a'..=b'h'] = token.text.as_bytes()
-            && (*letter != b'a' || !self.tokens.get(self.at + 1).is_some_and(|next| next.sorts.is_empty()))
-            && !token.is(Sort::Indefinite)
-        {
-            (noun.ordinal, noun.pick) = (Some(u32::from(letter - b'a') + 1), Pick::The);
+        let number = match (&token.kind, token.text.as_bytes()) {
+            (Kind::Number(_), _) => self.count(),
+            (Kind::Word, [letter @ b'a'..=b'h']) if token.capital => Some(u32::from(letter - b'a') + 1),
+            _ => None,
+        };
+        if let (Some(number), Head::Role(role)) = (number, noun.head.clone()) {
+            noun.ordinal = Some(number);
+            noun.head = Head::Name(format!("{role} {}", token.text));
+            (noun.beside, noun.pick) = (Some(role), Pick::The);
             self.at += 1;
         }
     }
@@ -420,12 +436,20 @@ impl Reader<'_> {
         if !told || !picks {
             return None;
         }
+        // `at 4`, `around ten`: a number alone is nobody, unless they do something.
+        let alone = noun.pick == Pick::Some && noun.ordinal.is_none();
+        let figure = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|last| last.number().is_some());
+        let acts = |token: &Token| token.is(Sort::Of) || token.is(Sort::Verb) || token.is(Sort::Be) || token.is(Sort::Do) || token.is(Sort::Modal);
+        let several = noun.count.is_some_and(|count| count > 1);
+        if alone && (figure || several) && !self.peek().is_some_and(acts) && !(several && !figure && self.peek().is_some_and(|next| next.is(Sort::Looks) || next.sorts.is_empty())) {
+            return None;
+        }
         // `no reaction`, `another corridor`, `each time`.
         self.of(&mut noun);
         let ends = |token: &Token| {
             let joins = [Sort::And, Sort::But, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Not, Sort::Of, Sort::Who, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Then, Sort::At, Sort::By, Sort::To, Sort::Verb, Sort::Cause];
             let number = self.lexicon.words.numbers.contains_key(&token.lemma);
-            !token.is_said() || joins.iter().any(|sort| token.is(*sort)) || token.text.ends_with("ly") || token.is(Sort::Fill) || number
+            !token.is_said() || joins.iter().any(|sort| token.is(*sort)) || token.text.ends_with("ly") || token.is(Sort::Fill) && !token.is(Sort::Empty) || number
         };
         let alone = noun.of.is_some() || self.peek().is_none_or(ends);
         (alone && noun.pick != Pick::None || noun.of.is_some() || noun.pick == Pick::None && alone).then(|| {

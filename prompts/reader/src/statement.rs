@@ -243,6 +243,7 @@ impl Maker<'_> {
             self.say(tokens, Says::Do(deed));
         } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
             let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m };
+            self.say(tokens.clone(), Says::Introduce(who));
             self.say(tokens, Says::Then(reason));
         } else if frame.asks {
             self.say(tokens, Says::NotRead);

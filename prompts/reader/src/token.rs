@@ -58,6 +58,8 @@ pub(crate) enum Sort {
     Looks,
     Thing,
     Fill,
+    /// A noun that says nothing of its own: `way`, `moment`.
+    Empty,
     Verb,
 }
 

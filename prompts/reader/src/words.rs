@@ -11,6 +11,7 @@ use crate::token::{Bent, Sort, Sorts};
 #[serde(deny_unknown_fields)]
 struct File {
     fill: String,
+    empty: String,
     looks: String,
     things: String,
     robot: String,
@@ -70,6 +71,7 @@ impl Words {
         };
         let mut lists: Vec<(Sort, &str)> = vec![
             (Sort::Fill, &file.fill),
+            (Sort::Empty, &file.empty),
             (Sort::Looks, &file.looks),
             (Sort::Thing, &file.things),
             (Sort::Robot, &file.robot),
