@@ -88,6 +88,8 @@ pub(crate) struct Clause {
     pub(crate) also: Vec<Noun>,
     /// By whom, in the passive.
     pub(crate) agent: Option<Noun>,
+    /// Whether it says `does`, or `does not`, and not what.
+    pub(crate) does: Option<bool>,
     pub(crate) lasts_s: Option<f64>,
     pub(crate) after_s: Option<f64>,
     pub(crate) within_m: Option<f64>,
@@ -109,6 +111,7 @@ impl Clause {
             acts: Vec::new(),
             also: Vec::new(),
             agent: None,
+            does: None,
             lasts_s: None,
             after_s: None,
             within_m: None,
@@ -161,6 +164,8 @@ impl Parser<'_> {
 
     fn sentence(&mut self) {
         let mut pending: Vec<Condition> = Vec::new();
+        // What was said when before the clauses for which it holds.
+        let mut ahead: Vec<Condition> = Vec::new();
         let first = self.found.len();
         let mut join = Join::Start;
         let mut apart = true;
@@ -180,7 +185,15 @@ impl Parser<'_> {
                 let before = self.found.len() > first && (!apart || !more);
                 match self.found.last_mut().filter(|_| before) {
                     Some(clause) => clause.conditions.push(condition),
-                    None => pending.push(condition),
+                    None => {
+                        if pending.is_empty() {
+                            ahead.clear();
+                        }
+                        if matches!(condition.tie, Tie::When | Tie::After) {
+                            ahead.push(condition.clone());
+                        }
+                        pending.push(condition);
+                    }
                 }
                 continue;
             }
@@ -194,6 +207,9 @@ impl Parser<'_> {
             clause.tokens.end = self.token().max(clause.tokens.end);
             if clause.conditions.is_empty() || !pending.is_empty() {
                 clause.conditions.append(&mut pending);
+            }
+            if clause.conditions.is_empty() && clause.after_s.is_none() && clause.join != Join::Then {
+                clause.conditions.clone_from(&ahead);
             }
             self.share(&mut clause, first);
             self.found.push(clause);
@@ -419,12 +435,20 @@ impl Parser<'_> {
     fn beside(&mut self, clause: &mut Clause) -> bool {
         let marks = |chunk: Option<&Chunk>| matches!(chunk.map(|chunk| &chunk.is), Some(Is::Mark(Mark::Comma | Mark::Open | Mark::Close | Mark::Dash | Mark::Stop)) | None);
         let Some(Is::Noun(noun)) = self.ahead(1).map(|chunk| &chunk.is) else { return false };
+        let opens = self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Open));
+        // `the driver (actor 1)`
+        if let (true, Head::Name(name), Some(last)) = (opens, &noun.head, clause.subject.last_mut()) {
+            last.names.push(name.clone());
+            self.at += 3;
+            return true;
+        }
+        let labeled = clause.subject.iter().all(|noun| noun.ordinal.is_some());
         let Head::Role(role) = noun.head.clone() else { return false };
         let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
         let label = |noun: &Noun| noun.ordinal.is_some() && matches!(noun.head, Head::Name(_));
         let named = |noun: &Noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none() || label(noun) || noun.generic;
         let acts = |next: &Chunk| next.word(Sort::Verb) && next.bent == Bent::S || next.word(Sort::Be) || next.word(Sort::And) || next.word(Sort::Modal);
-        if !clause.subject.iter().all(named) || count != clause.subject.len() && !clause.subject.iter().all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1)))) || !marks(self.peek()) || self.ahead(2).is_some_and(acts) {
+        if !clause.subject.iter().all(named) || count != clause.subject.len() && !clause.subject.iter().all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1)))) || !marks(self.peek()) && !(labeled && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Colon))) || self.ahead(2).is_some_and(acts) {
             return false;
         }
         if count != clause.subject.len() && clause.subject.iter().any(|noun| noun.several && noun.count.is_none_or(|own| usize::try_from(own) != Ok(count))) {
@@ -460,7 +484,12 @@ impl Parser<'_> {
                 let after_noun = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.noun().is_some());
                 after_noun && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) || next.word(Sort::Be) || next.word(Sort::Modal))
             }
-            Is::Word if inner => self.tie().is_some() && !clause.is_bare(),
+            Is::Word if inner => {
+                // `until it has passed does he go on`
+                let helps = [Sort::Do, Sort::Modal, Sort::Have, Sort::Be].iter().any(|sort| chunk.word(*sort));
+                let turned = helps && self.ahead(1).and_then(Chunk::noun).is_some_and(Noun::may_be_person);
+                (self.tie().is_some() || turned) && !clause.is_bare()
+            }
             Is::Word | Is::Whose(_) | Is::Amount(_) | Is::Place(_) => false,
         }
     }
@@ -495,6 +524,9 @@ impl Parser<'_> {
             return;
         }
         let obeys = clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
+        if chunk.word(Sort::Do) {
+            clause.does = Some(!*not);
+        }
         if chunk.word(Sort::Not) && obeys {
             // `he does not`
             if let Some(last) = clause.acts.last_mut() {
@@ -502,6 +534,7 @@ impl Parser<'_> {
             }
         } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
             *not = true;
+            clause.does = clause.does.map(|_| false);
         } else if chunk.word(Sort::Slow) {
             clause.pace_mps = Some(SLOW_MPS);
         } else if chunk.word(Sort::Brisk) {

@@ -61,8 +61,12 @@ struct Cast {
     tells: bool,
     /// What people react to from now on.
     pending: Vec<Reason<People>>,
+    /// The sign that somebody made last, to which others react.
+    signed: Option<(People, Reason<People>)>,
     /// What was asked for last.
     asked: Option<Gesture>,
+    /// What was done last, or not done, for `the second does`.
+    done: Option<Deed<People>>,
 }
 
 impl Cast {
@@ -85,12 +89,14 @@ impl Cast {
             Says::RobotSays(sign, to) => {
                 let to = to.as_ref().map(|to| self.people(to));
                 self.asked = sign.or(self.asked);
+                self.signed = None;
                 self.pending = vec![Reason { who: None, cue: Cue::Says, sign: *sign, amount: None }];
                 Says::RobotSays(*sign, to)
             }
             Says::Then(reason) => {
                 let reason = self.reason(reason);
                 self.pending = vec![reason.clone()];
+                self.signed = None;
                 Says::Then(reason)
             }
             Says::Happens(class) => Says::Happens(*class),
@@ -121,20 +127,42 @@ impl Cast {
         let mut when: Vec<Reason<People>> = deed.when.iter().map(|reason| self.reason(reason)).collect();
         let until: Vec<Reason<People>> = deed.until.iter().map(|reason| self.reason(reason)).collect();
         if when.is_empty() && !deed.not {
-            when.clone_from(&self.pending);
+            when = match &self.signed {
+                Some((signer, reason)) if signer.iter().all(|signer| !who.contains(signer)) => vec![reason.clone()],
+                _ => self.pending.clone(),
+            };
         }
-        let act = if deed.obeys { self.asked_for().unwrap_or(deed.act) } else { deed.act };
+        let (mut act, mut says, mut whom) = (deed.act, deed.says, whom);
+        if deed.obeys {
+            match (self.asked_for(), &self.done) {
+                (Some(asked), _) => act = asked,
+                (None, Some(done)) => {
+                    (act, says, whom) = (done.act, done.says, done.whom.clone());
+                    if deed.when.is_empty() && !deed.not {
+                        when.clone_from(&done.when);
+                    }
+                }
+                (None, None) => {}
+            }
+        }
         // `steps aside when it asks him to`
         for reason in when.iter_mut().filter(|reason| reason.cue == Cue::Says && reason.sign.is_none()) {
             reason.sign = sign_for(act);
         }
         self.last.clone_from(&who);
-        if act == Act::Sign && !deed.not {
+        if act == Act::Sign && !deed.not && says != Some(Gesture::Acknowledged) {
             // Whoever makes a sign is reacted to by others.
-            self.pending = vec![Reason { who: Some(who.clone()), cue: Cue::Says, sign: deed.says, amount: None }];
-            self.asked = deed.says.or(self.asked);
+            let reason = Reason { who: Some(who.clone()), cue: Cue::Says, sign: says, amount: None };
+            self.signed = Some((who.clone(), reason));
+            self.asked = says.or(self.asked);
         }
-        Deed { who, act, whom, not: deed.not, when, until, for_s: deed.for_s, says: deed.says, obeys: deed.obeys }
+        if !until.is_empty() {
+            // What comes then comes after what was waited for.
+            self.pending.clone_from(&until);
+        }
+        let deed = Deed { who, act, whom, not: deed.not, when, until, for_s: deed.for_s, says, obeys: deed.obeys };
+        self.done = Some(deed.clone());
+        deed
     }
 
     fn asked_for(&self) -> Option<Act> {
@@ -175,6 +203,9 @@ impl Cast {
     fn tell(&mut self, noun: &Noun, people: &[usize]) {
         for (name, person) in noun.names.iter().zip(people) {
             self.names.insert(name.clone(), *person);
+            if let Some((_, label)) = name.rsplit_once(' ') {
+                self.names.insert(label.to_owned(), *person);
+            }
         }
         let Some(role) = &noun.beside else { return };
         for person in people {

@@ -23,10 +23,22 @@ pub(crate) fn lex(text: &str, words: &Words) -> Vec<Token> {
         if piece.chars().next().is_some_and(char::is_alphanumeric) {
             word(start, piece, words, &mut tokens);
         } else {
-            marks(start, piece, text, &mut tokens);
+            marks(start, piece, text, words, &mut tokens);
         }
     }
-    tokens
+    unnumbered(tokens)
+}
+
+/// The tokens without the numbers of a list: `1. The robot …`.
+fn unnumbered(tokens: Vec<Token>) -> Vec<Token> {
+    let stops = |token: Option<&Token>| token.is_none_or(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Colon));
+    let close = |token: Option<&Token>| token.is_some_and(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Close));
+    let of_list = |at: usize| {
+        let before = at.checked_sub(1).and_then(|before| tokens.get(before));
+        tokens.get(at).is_some_and(|token| token.number().is_some()) && stops(before) && close(tokens.get(at + 1))
+    };
+    let keep: Vec<bool> = (0..tokens.len()).map(|at| !of_list(at) && !at.checked_sub(1).is_some_and(&of_list)).collect();
+    tokens.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(token, _)| token).collect()
 }
 
 /// A word of the alphabet, or a number with what is stuck to it: `2m`, `doesn't`, `robot's`.
@@ -60,7 +72,7 @@ fn word(start: usize, piece: &str, words: &Words, tokens: &mut Vec<Token>) {
     tokens.push(tail);
 }
 
-fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
+fn marks(start: usize, piece: &str, text: &str, words: &Words, tokens: &mut Vec<Token>) {
     let before = text.get(..start).unwrap_or_default();
     let after = text.get(start + piece.len()..).unwrap_or_default();
     let apart = before.ends_with(' ') && after.starts_with(' ');
@@ -78,13 +90,13 @@ fn marks(start: usize, piece: &str, text: &str, tokens: &mut Vec<Token>) {
         Some('\'' | '‘' | '’' | '`') if !before.ends_with(char::is_alphanumeric) || !after.starts_with(char::is_alphanumeric) => {
             Mark::Quote
         }
-        Some('<' | '+' | '&' | '@' | '#' | '/') => {
+        Some('<' | '+' | '&' | '@' | '#') => {
             tokens.push(Token {
                 at: start..start + piece.len(),
                 text: piece.to_owned(),
-                lemma: piece.to_owned(),
+                lemma: words.base(piece).0,
                 kind: Kind::Word,
-                sorts: crate::token::Sorts::default(),
+                sorts: words.sorts(&words.base(piece).0),
                 bent: Bent::Base,
                 capital: false,
             });

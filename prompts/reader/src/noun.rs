@@ -163,7 +163,9 @@ impl Reader<'_> {
         let start = self.at;
         // `each other` is nobody of their own.
         let next_is = |sort| self.tokens.get(self.at + 1).is_some_and(|next| next.is(sort));
-        if self.peek()?.is(Sort::Every) && next_is(Sort::Other) {
+        let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        let each_other = self.peek()?.is(Sort::Every) && next_is(Sort::Other);
+        if each_other || self.peek()?.is(Sort::Other) && before.is_some_and(|before| before.is(Sort::Every)) {
             return None;
         }
         if let Some(noun) = self.pronoun().or_else(|| self.name()) {
@@ -222,7 +224,8 @@ impl Reader<'_> {
             next.is(Sort::Be) || next.is(Sort::Do) || next.is(Sort::Modal) || next.is_mark(Mark::Colon) || next.is(Sort::And) || next.is(Sort::Verb) && next.bent == Bent::S
         });
         // `A walks ahead, B crosses`, `W1`, `ped2`.
-        let letter = token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h']) || token.capital && token.text == "a" && next_acts;
+        let of_label = at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Label));
+        let letter = !of_label && (token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h']) || token.capital && token.text == "a" && next_acts);
         let digit = token.text.len() <= 4 && token.kind == Kind::Word && token.text.ends_with(|c: char| c.is_ascii_digit()) && token.sorts.is_empty();
         let known = |token: &Token| !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2;
         if known(token) && !letter && !digit {

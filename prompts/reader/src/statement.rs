@@ -133,7 +133,13 @@ impl Maker<'_> {
         let mut turned = false;
         let denied = clause.acts.iter().any(|act| act.not);
         for condition in &clause.conditions {
-            match (self.reason(condition, &clause.subject), condition.tie) {
+            let reason = self.reason(condition, &clause.subject);
+            // Whoever is waited for makes the sign.
+            if let Some(Reason { who: Some(who), cue: Cue::Says, sign, .. }) = &reason {
+                let deed = Deed { who: who.clone(), act: Act::Sign, whom: None, not: false, when: Vec::new(), until: Vec::new(), for_s: None, says: *sign, obeys: false };
+                self.say(condition.clause.tokens.clone(), Says::Do(deed));
+            }
+            match (reason, condition.tie) {
                 (Some(reason), Tie::When | Tie::While | Tie::After) => when.push(reason),
                 // `does not move until`: moves then.
                 (Some(reason), Tie::Until | Tie::Before | Tie::Unless) if denied => {
@@ -146,7 +152,10 @@ impl Maker<'_> {
         }
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         self.places(clause, robot);
-        if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
+        if let Some(does) = clause.does.filter(|_| clause.acts.is_empty() && !robot && !clause.subject.is_empty()) {
+            let deed = Deed { who: clause.subject.clone(), act: Act::Navigate, whom: None, not: !does, when: when.clone(), until: until.clone(), for_s: None, says: None, obeys: true };
+            self.say(clause.tokens.clone(), Says::Do(deed));
+        } else if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
             self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
         }
         let whole = Whole { clause, when: &when, until: &until, turned };
