@@ -50,7 +50,7 @@ pub(crate) fn account(scene: &Scene, statements: &[Statement<People>]) -> Vec<Pi
             | Says::Do(_)
             | Says::RobotSays(Some(_), _)
             | Says::Then(_)
-            | Says::Happens(_)
+            | Says::Happens(..)
             | Says::RobotStart(_)
             | Says::RobotGoal(_) => Fate::Read,
         };

@@ -118,7 +118,9 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
         let head = if token.text == "his" { Head::He } else { head };
         return (Is::Whose(Noun::new(head, at..at + 1)), at + 1);
     }
-    (Is::Word, at + 1)
+    // `rack 12`, `shift 2`: the number is a name.
+    let named = token.is(Sort::Label) && tokens.get(at + 1).is_some_and(|next| next.number().is_some()) && amount(tokens, at + 1, lexicon).is_none();
+    (Is::Word, at + 1 + usize::from(named))
 }
 
 /// Whether `'s` makes a possessor of what stands before it, and is no short `is`.

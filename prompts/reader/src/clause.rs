@@ -198,6 +198,7 @@ impl Parser<'_> {
                 continue;
             }
             let start = self.at;
+            let before = self.subject.clone();
             let mut clause = self.clause(join, false);
             // What may not begin a clause is left over.
             if self.at == start {
@@ -205,6 +206,9 @@ impl Parser<'_> {
                 self.at += 1;
             }
             clause.tokens.end = self.token().max(clause.tokens.end);
+            if clause.acts.is_empty() && clause.subject == before && self.found.len() > first && self.adds(&clause) {
+                continue;
+            }
             if clause.conditions.is_empty() || !pending.is_empty() {
                 clause.conditions.append(&mut pending);
             }
@@ -223,6 +227,20 @@ impl Parser<'_> {
             clause.conditions.append(&mut pending);
             self.found.push(clause);
         }
+    }
+
+    /// `…, for five seconds`: an amount that belongs to the clause before.
+    fn adds(&mut self, clause: &Clause) -> bool {
+        let amounts = clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
+        let Some(last) = self.found.last_mut().filter(|last| amounts && !last.acts.is_empty()) else { return false };
+        last.lasts_s = last.lasts_s.or(clause.lasts_s);
+        last.within_m = last.within_m.or(clause.within_m);
+        last.after_s = last.after_s.or(clause.after_s);
+        last.places.extend(&clause.places);
+        last.left.extend(&clause.left);
+        last.looks.extend(&clause.looks);
+        last.conditions.extend(clause.conditions.iter().cloned());
+        true
     }
 
     /// What is said when for the first of several acts holds for those joined to it: `when it is near, he stops and looks`.
@@ -510,11 +528,16 @@ impl Parser<'_> {
     }
 
     fn place(&mut self, class: Option<PlaceClass>, clause: &mut Clause) {
-        let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
-        let to = before.is_some_and(|before| before.word(Sort::To) || before.lemma == "into" || before.lemma == "toward");
-        let from = before.is_some_and(|before| before.word(Sort::From));
-        clause.places.push(At { class, to, from, token: self.token() });
+        clause.places.push(self.place_at(class, self.at));
         self.at += 1;
+    }
+
+    /// A place with the word before it: `to the exit`, `from a room`.
+    fn place_at(&self, class: Option<PlaceClass>, at: usize) -> At {
+        let before = at.checked_sub(1).and_then(|at| self.chunks.get(at));
+        let to = before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into));
+        let from = before.is_some_and(|before| before.word(Sort::From));
+        At { class, to, from, token: self.chunks.get(at).map_or(0, |chunk| chunk.tokens.start) }
     }
 
     fn word(&mut self, not: &mut bool, clause: &mut Clause) {
@@ -570,8 +593,7 @@ impl Parser<'_> {
             Some(Amount::Time(secs)) => clause.lasts_s = Some(secs),
             None => {}
         }
-        let token = start;
-        clause.places.extend(found.place.map(|class| At { class, to: false, from: false, token }));
+        clause.places.extend(found.place.map(|(class, at)| self.place_at(class, at)));
         let frame = self.lexicon.frames.get(found.row);
         let mut sign = frame.and_then(|frame| frame.says);
         if frame.is_some_and(|frame| frame.asks) {

@@ -48,6 +48,8 @@ struct Cast {
     roles: Vec<String>,
     /// Who was named last.
     last: People,
+    /// Who was named before them.
+    before: People,
     /// The last several who were named together.
     set: People,
     /// Who of them was picked since.
@@ -99,7 +101,7 @@ impl Cast {
                 self.signed = None;
                 Says::Then(reason)
             }
-            Says::Happens(class) => Says::Happens(*class),
+            Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::RobotStart(class) => Says::RobotStart(*class),
             Says::RobotGoal(class) => Says::RobotGoal(*class),
             Says::Background(reason) => Says::Background(*reason),
@@ -120,8 +122,14 @@ impl Cast {
         let who = self.people(&deed.who);
         let whom = deed.whom.as_ref().map(|whom| {
             let last = self.last.clone();
-            let whom = self.people(whom);
+            let mut whom = self.people(whom);
             self.last = last;
+            // Nobody follows themselves: `his colleague follows him`.
+            if whom.iter().any(|whom| who.contains(whom)) {
+                let others = self.before.iter().chain(self.set.iter()).copied();
+                let others: People = others.chain(self.everybody()).filter(|other| !who.contains(other)).collect();
+                whom = others.into_iter().take(1).collect();
+            }
             whom
         });
         let mut when: Vec<Reason<People>> = deed.when.iter().map(|reason| self.reason(reason)).collect();
@@ -193,8 +201,8 @@ impl Cast {
             self.set.clone_from(&all);
             self.picked.clear();
         }
-        if !all.is_empty() {
-            self.last.clone_from(&all);
+        if !all.is_empty() && all != self.last {
+            self.before = std::mem::replace(&mut self.last, all.clone());
         }
         all
     }

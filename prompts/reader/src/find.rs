@@ -17,8 +17,8 @@ pub(crate) struct Found {
     pub(crate) object: Option<Noun>,
     /// Whose way, head or side it is.
     pub(crate) owner: Option<Noun>,
-    /// A place in it.
-    pub(crate) place: Option<Option<PlaceClass>>,
+    /// A place in it, and its chunk.
+    pub(crate) place: Option<(Option<PlaceClass>, usize)>,
     /// A distance or time in it.
     pub(crate) amount: Option<Amount>,
     /// Adverbs that stand within it.
@@ -115,7 +115,7 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
             true
         }
         (Part::Place, Is::Place(class)) => {
-            found.place = Some(*class);
+            found.place = Some((*class, found.end));
             true
         }
         (Part::Amount, Is::Amount(amount)) => {

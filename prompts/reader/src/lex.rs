@@ -26,18 +26,30 @@ pub(crate) fn lex(text: &str, words: &Words) -> Vec<Token> {
             marks(start, piece, text, words, &mut tokens);
         }
     }
-    unnumbered(tokens)
+    unnumbered(tokens, words)
 }
 
 /// The tokens without the numbers of a list: `1. The robot …`.
-fn unnumbered(tokens: Vec<Token>) -> Vec<Token> {
+fn unnumbered(tokens: Vec<Token>, words: &Words) -> Vec<Token> {
     let stops = |token: Option<&Token>| token.is_none_or(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Colon));
     let close = |token: Option<&Token>| token.is_some_and(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Close));
     let of_list = |at: usize| {
         let before = at.checked_sub(1).and_then(|before| tokens.get(before));
         tokens.get(at).is_some_and(|token| token.number().is_some()) && stops(before) && close(tokens.get(at + 1))
     };
-    let keep: Vec<bool> = (0..tokens.len()).map(|at| !of_list(at) && !at.checked_sub(1).is_some_and(&of_list)).collect();
+    let number = |at: usize| tokens.get(at).is_some_and(|token| token.number().is_some());
+    let touch = |at: usize| tokens.get(at).zip(tokens.get(at + 1)).is_some_and(|(one, next)| one.at.end == next.at.start);
+    // `14:00` is a time of day.
+    let clock = |at: usize| number(at) && number(at + 2) && touch(at) && touch(at + 1) && tokens.get(at + 1).is_some_and(|token| token.is_mark(Mark::Colon));
+    let of_clock = |at: usize| (0..3).any(|back| at.checked_sub(back).is_some_and(clock));
+    // `three, no, two`
+    let no = |at: usize| tokens.get(at).is_some_and(|token| token.is(Sort::No)) && tokens.get(at + 1).is_some_and(|token| token.is_mark(Mark::Comma));
+    let counts = |at: usize| number(at) || tokens.get(at).is_some_and(|token| words.numbers.contains_key(&token.lemma));
+    let taken_back = |at: usize| counts(at) && tokens.get(at + 1).is_some_and(|token| !token.is_said()) && no(at + 2) && counts(at + 4);
+    let of_correction = |at: usize| (0..4).any(|back| at.checked_sub(back).is_some_and(taken_back));
+    let keep: Vec<bool> = (0..tokens.len())
+        .map(|at| !of_list(at) && !at.checked_sub(1).is_some_and(&of_list) && !of_clock(at) && !of_correction(at))
+        .collect();
     tokens.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(token, _)| token).collect()
 }
 
@@ -169,5 +181,6 @@ fn swapped_or_lost(known: &str, text: &str) -> bool {
         letters.dedup();
         letters
     };
-    sorted(known) == sorted(text) || squeezed(known) == squeezed(text)
+    let lost = known.len() == text.len() + 1 && text.len() >= CORRECTED_FROM;
+    sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost
 }

@@ -339,6 +339,12 @@ impl Reader<'_> {
                 self.at += 1;
                 return true;
             }
+            // `the older one`
+            if token.lemma == "one" && told && self.at > start {
+                noun.count = Some(1);
+                self.at += 1;
+                return true;
+            }
             if (token.is(Sort::Role) || token.is(Sort::People)) && token.bent != Bent::Ing && !next.is_some_and(compound) {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
@@ -452,7 +458,7 @@ impl Reader<'_> {
         let ends = |token: &Token| {
             let joins = [Sort::And, Sort::But, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Not, Sort::Of, Sort::Who, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Then, Sort::At, Sort::By, Sort::To, Sort::Verb, Sort::Cause];
             let number = self.lexicon.words.numbers.contains_key(&token.lemma);
-            !token.is_said() || joins.iter().any(|sort| token.is(*sort)) || token.text.ends_with("ly") || token.is(Sort::Fill) && !token.is(Sort::Empty) || number
+            !token.is_said() || !token.is(Sort::Empty) && joins.iter().any(|sort| token.is(*sort)) || token.text.ends_with("ly") || token.is(Sort::Fill) && !token.is(Sort::Empty) || number
         };
         let alone = noun.of.is_some() || self.peek().is_none_or(ends);
         (alone && noun.pick != Pick::None || noun.of.is_some() || noun.pick == Pick::None && alone).then(|| {

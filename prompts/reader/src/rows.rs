@@ -75,6 +75,16 @@ pub enum Cue {
     After,
 }
 
+/// A part of the robot's way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// Where it begins.
+    Start,
+    /// Where it ends.
+    Goal,
+}
+
 /// A row of `frames.toml`: a verb with what belongs to it, or another phrase that says how somebody moves.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -113,8 +123,10 @@ pub struct Frame {
     pub unplayed: Option<String>,
     /// Whether it says how somebody moves, and no more than another phrase beside it: `walks`.
     pub plain: bool,
-    /// Whether the robot comes to a place by it.
+    /// Whether the robot drives by it: to where it ends, from where it begins.
     pub goes: bool,
+    /// What a place in it is for the robot: `leaves the ward`, `reaches the exit`.
+    pub part: Option<Part>,
     /// Texts, each read so.
     pub reads: Vec<String>,
     /// What every one of them gives: a line of the form.

@@ -13,7 +13,7 @@ use socrates_model::{Gesture, PlaceClass, Relation, Side};
 use crate::clause::{At, Clause, Condition, Join, Predicate, Tie};
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun, Pick};
-use crate::rows::{Act, Cue, Frame};
+use crate::rows::{Act, Cue, Frame, Part};
 
 /// Why somebody begins or ends something.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +45,8 @@ pub enum Says<W> {
     RobotSays(Option<Gesture>, Option<W>),
     /// Something happens to which people may react from then on.
     Then(Reason<W>),
-    /// Where it happens.
-    Happens(PlaceClass),
+    /// Where it happens; the number ranks it: people are there (3), it stands alone (2), the robot is there (1).
+    Happens(PlaceClass, u8),
     /// Where the robot's way begins.
     RobotStart(PlaceClass),
     /// Where it ends.
@@ -134,6 +134,10 @@ impl Maker<'_> {
         let denied = clause.acts.iter().any(|act| act.not);
         for condition in &clause.conditions {
             let reason = self.reason(condition, &clause.subject);
+            if reason.is_some() {
+                let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
+                self.places(&condition.clause, robot);
+            }
             // Whoever is waited for makes the sign.
             if let Some(Reason { who: Some(who), cue: Cue::Says, sign, .. }) = &reason {
                 let deed = Deed { who: who.clone(), act: Act::Sign, whom: None, not: false, when: Vec::new(), until: Vec::new(), for_s: None, says: *sign, obeys: false };
@@ -240,7 +244,8 @@ impl Maker<'_> {
     /// Somebody does something, to the robot or to nobody.
     fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
         let tokens = act.tokens.clone();
-        if let Some(relation) = frame.relate.filter(|_| !act.not) {
+        let waits = !whole.when.is_empty() && frame.act.is_some();
+        if let Some(relation) = frame.relate.filter(|_| !act.not && !waits) {
             self.say(tokens.clone(), Says::Relate(who.clone(), relation, frame.side));
         }
         if frame.group {
@@ -325,14 +330,22 @@ impl Maker<'_> {
     }
 
     fn places(&mut self, clause: &Clause, robot: bool) {
-        let goes = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.goes);
-        let goes = robot && (clause.acts.iter().any(goes) || clause.acts.is_empty());
+        let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
+        let goes = robot && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes)));
+        let part = clause.acts.iter().filter(|act| robot && !act.not).find_map(|act| frame(act)?.part);
+        let rank = match () {
+            () if robot => 1,
+            () if clause.subject.is_empty() || clause.acts.is_empty() => 2,
+            () => 3,
+        };
         for At { class, to, from, token } in &clause.places {
             let says = match class {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
-                Some(class) if goes && *to => Says::RobotGoal(*class),
-                Some(class) if goes && *from => Says::RobotStart(*class),
-                Some(class) => Says::Happens(*class),
+                Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
+                Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),
+                Some(class) if part == Some(Part::Start) => Says::RobotStart(*class),
+                Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),
+                Some(class) => Says::Happens(*class, rank),
             };
             self.say(*token..token + 1, says);
         }

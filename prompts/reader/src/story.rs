@@ -65,7 +65,7 @@ pub struct Story {
 pub(crate) fn story(told: &Told) -> Story {
     let people = told.roles.iter().map(|role| Person { role: role.clone(), ..Person::default() }).collect();
     let mut story = Story { people, ..Story::default() };
-    let mut groups = 0;
+    let (mut groups, mut ranked) = (0, 0);
     for statement in &told.statements {
         match &statement.says {
             Says::Relate(who, relation, side) => story.each(who, |person| {
@@ -83,10 +83,11 @@ pub(crate) fn story(told: &Told) -> Story {
             Says::Pace(who, mps) => story.each(who, |person| person.pace_mps = Some(*mps)),
             Says::Do(deed) => story.does(deed),
             Says::RobotSays(Some(gesture), _) => story.robot_sign(*gesture),
-            Says::Happens(class) => story.place = story.place.or(Some(*class)),
+            Says::Happens(class, rank) if *rank > ranked => (story.place, ranked) = (Some(*class), *rank),
             Says::RobotStart(class) => story.robot_start = Some(*class),
             Says::RobotGoal(class) => story.robot_goal = Some(*class),
             Says::Group(_)
+            | Says::Happens(..)
             | Says::RobotSays(None, _)
             | Says::Introduce(_)
             | Says::Then(_)
@@ -94,6 +95,11 @@ pub(crate) fn story(told: &Told) -> Story {
             | Says::NotPlayed(_)
             | Says::NotRead => {}
         }
+    }
+    // Whoever comes out, or stays inside, is where the robot goes.
+    let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
+    if story.place.is_none() && story.people.iter().any(inside) {
+        story.place = story.robot_goal;
     }
     story
 }
@@ -133,6 +139,10 @@ impl Story {
             says: deed.says,
         };
         self.each(&deed.who, |person| {
+            // Somebody of whom nothing else is known stands there from the start.
+            if step.act == Act::StandStill && step.when.is_empty() && person.relation.is_none() && person.steps.is_empty() {
+                person.relation = Some(Relation::Static);
+            }
             if !person.steps.contains(&step) {
                 person.steps.push(step.clone());
             }

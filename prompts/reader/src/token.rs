@@ -44,6 +44,7 @@ pub(crate) enum Sort {
     By,
     At,
     From,
+    Into,
     Later,
     Title,
     With,
