@@ -206,7 +206,8 @@ impl Parser<'_> {
                 self.at += 1;
             }
             clause.tokens.end = self.token().max(clause.tokens.end);
-            if clause.acts.is_empty() && clause.subject == before && self.found.len() > first && self.adds(&clause) {
+            let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
+            if clause.acts.iter().all(plain) && clause.subject == before && self.found.len() > first && self.adds(&clause) {
                 continue;
             }
             if clause.conditions.is_empty() || !pending.is_empty() {
@@ -233,6 +234,10 @@ impl Parser<'_> {
     fn adds(&mut self, clause: &Clause) -> bool {
         let amounts = clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
         let Some(last) = self.found.last_mut().filter(|last| amounts && !last.acts.is_empty()) else { return false };
+        // A place, or where somebody goes, makes a clause of its own.
+        if clause.acts.iter().any(|act| act.object.is_some() || act.sign.is_some()) {
+            return false;
+        }
         last.lasts_s = last.lasts_s.or(clause.lasts_s);
         last.within_m = last.within_m.or(clause.within_m);
         last.after_s = last.after_s.or(clause.after_s);
@@ -336,6 +341,14 @@ impl Parser<'_> {
                     let role = role_of(noun);
                     for noun in &mut clause.subject {
                         noun.beside.clone_from(&role);
+                    }
+                    self.at += 1;
+                }
+                // `they all`, `both of them`, `does neither`
+                Is::Noun(noun) if noun.head == Head::Bare && matches!(noun.pick, Pick::All | Pick::None) && noun.of.is_none() => {
+                    if noun.pick == Pick::None {
+                        not = true;
+                        clause.does = clause.does.map(|_| false);
                     }
                     self.at += 1;
                 }
@@ -496,6 +509,7 @@ impl Parser<'_> {
             }
             Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.lemma == "or" || chunk.lemma == "nor" => true,
             Is::Word if chunk.word(Sort::Then) => true,
+            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => !clause.is_bare() || !clause.subject.is_empty(),
             Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => !clause.subject.is_empty() || !clause.acts.is_empty(),
             // `that` after a noun begins a relative clause.
             Is::Word if chunk.word(Sort::Who) => {

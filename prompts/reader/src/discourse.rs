@@ -54,6 +54,8 @@ struct Cast {
     set: People,
     /// Who of them was picked since.
     picked: People,
+    /// Whether somebody is a woman, or a man, as far as that was said.
+    female: BTreeMap<usize, bool>,
     /// People by their names.
     names: BTreeMap<String, usize>,
     /// Who a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
@@ -83,7 +85,13 @@ impl Cast {
 
     fn says(&mut self, says: &Says<Named>) -> Option<Says<People>> {
         Some(match says {
-            Says::Introduce(who) => Says::Introduce(self.people(who)),
+            Says::Introduce(who) => {
+                // `three people get out, a cleaner, a doctor and a visitor`
+                let count: u32 = who.iter().map(|noun| noun.count.unwrap_or(1)).sum();
+                let all = who.len() > 1 && u32::try_from(self.unnamed.len()) == Ok(count);
+                self.tells |= all && self.unnamed.iter().all(|person| self.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str())));
+                Says::Introduce(self.people(who))
+            }
             Says::Relate(who, relation, side) => Says::Relate(self.people(who), *relation, *side),
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
@@ -209,6 +217,9 @@ impl Cast {
 
     /// What people are called, and what they are, where that is told beside them.
     fn tell(&mut self, noun: &Noun, people: &[usize]) {
+        if let Some(female) = noun.female.filter(|_| matches!(noun.head, Head::Role(_))) {
+            self.female.extend(people.iter().map(|person| (*person, female)));
+        }
         for (name, person) in noun.names.iter().zip(people) {
             self.names.insert(name.clone(), *person);
             if let Some((_, label)) = name.rsplit_once(' ') {
@@ -235,7 +246,7 @@ impl Cast {
     fn meant(&mut self, noun: &Noun) -> People {
         match &noun.head {
             Head::Robot => People::new(),
-            Head::He | Head::It => self.one_named_last(),
+            Head::He | Head::It => self.one_named_last(noun.female),
             Head::They => match () {
                 () if self.last.len() > 1 => self.last.clone(),
                 () if !self.set.is_empty() => self.set.clone(),
@@ -248,12 +259,16 @@ impl Cast {
         }
     }
 
-    fn one_named_last(&self) -> People {
-        match self.last[..] {
-            [_] => self.last.clone(),
-            [] => self.everybody().into_iter().rev().take(1).collect(),
-            [first, ..] => vec![first],
+    /// Whoever was named last and may be a woman, or a man, as the pronoun says.
+    fn one_named_last(&mut self, female: Option<bool>) -> People {
+        let others = self.before.iter().copied().chain(self.everybody().into_iter().rev());
+        let mut all = self.last.iter().copied().chain(others);
+        let may = |person: &usize| female.is_none() || self.female.get(person).is_none_or(|own| Some(*own) == female);
+        let found = all.find(may).or_else(|| self.last.first().copied());
+        if let (Some(person), Some(female)) = (found, female) {
+            self.female.entry(person).or_insert(female);
         }
+        found.into_iter().collect()
     }
 
     /// `the first`, `two of them`, `the others`, `both`.

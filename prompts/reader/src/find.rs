@@ -96,7 +96,7 @@ fn matched(chunks: &[Chunk], at: usize, pattern: &Pattern, passive: bool) -> Opt
 fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
     let Some(chunk) = chunks.get(found.end) else { return false };
     let fits = match (part, &chunk.is) {
-        (Part::Word(words), Is::Word | Is::Place(_)) => words.contains(&chunk.lemma) && chunk.tokens.len() == 1,
+        (Part::Word(words), Is::Word | Is::Place(_)) => (words.contains(&chunk.lemma) || words.contains(&chunk.text)) && chunk.tokens.len() == 1,
         (Part::Anybody, Is::Noun(noun)) => {
             found.object = Some(noun.clone());
             true
@@ -132,7 +132,7 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
 fn may_stand_between(chunk: &Chunk) -> bool {
     let joins = [
         Sort::Not, Sort::To, Sort::Of, Sort::By, Sort::At, Sort::From, Sort::And, Sort::But, Sort::Who, Sort::When, Sort::While,
-        Sort::Until, Sort::Before, Sort::After,
+        Sort::Until, Sort::Before, Sort::After, Sort::Particle,
     ];
     match &chunk.is {
         Is::Whose(_) => true,

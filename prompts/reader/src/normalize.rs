@@ -12,7 +12,7 @@ use socrates_model::statement::Background;
 use crate::lexicon::Lexicon;
 use crate::pattern::{Part, Pattern, Patterns};
 use crate::rows::Extent;
-use crate::token::{Kind, Mark, Sort, Token};
+use crate::token::{Bent, Kind, Mark, Sort, Token};
 
 /// Tokens of the scene, and what stands beside it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -93,7 +93,8 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
     while let Some(token) = tokens.get(at) {
         let row = longest(&tokens, at, &lexicon.scope_patterns)
             .and_then(|(end, row)| Some((end, lexicon.scopes.get(row)?)))
-            .filter(|(_, row)| !row.first || at == first);
+            // What is asked of the program has no ending: `gives way` is no request.
+            .filter(|(_, row)| !row.first || at == first && token.bent == Bent::Base);
         if let Some((end, row)) = row {
             let end = match row.extent {
                 Extent::Words => end,

@@ -66,6 +66,8 @@ pub(crate) struct Noun {
     pub(crate) beside: Option<String>,
     /// Their names, of several: `two colleagues, Ben and Carla`.
     pub(crate) names: Vec<String>,
+    /// Whether a woman is meant, or a man.
+    pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
     pub(crate) generic: bool,
     /// Of whom: `one of the workers`.
@@ -86,6 +88,7 @@ impl Noun {
             pace_mps: None,
             beside: None,
             names: Vec::new(),
+            female: None,
             generic: false,
             of: None,
             tokens,
@@ -207,6 +210,7 @@ impl Reader<'_> {
         };
         let mut noun = Noun::new(head, self.at..self.at + 1);
         noun.several = noun.head == Head::They;
+        noun.female = token.is(Sort::Female).then_some(true).or(token.is(Sort::Male).then_some(false));
         if matches!(noun.head, Head::Role(_)) {
             noun.pick = Pick::Some;
         }
@@ -250,7 +254,8 @@ impl Reader<'_> {
     /// Whether something can be somebody's: a thing, a part of the body, a way.
     fn can_be_owned(token: &Token) -> bool {
         let joins = [Sort::At, Sort::To, Sort::Of, Sort::By, Sort::And, Sort::But, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Be, Sort::Modal, Sort::Not, Sort::Then, Sort::Who, Sort::Do, Sort::Cause, Sort::Definite, Sort::Indefinite];
-        token.kind == Kind::Word && !joins.iter().any(|sort| token.is(*sort)) && token.bent != Bent::Ing
+        let acts = token.is(Sort::Verb) && token.bent == Bent::S;
+        token.kind == Kind::Word && !acts && !joins.iter().any(|sort| token.is(*sort)) && token.bent != Bent::Ing
     }
 
     fn determiner(&mut self, noun: &mut Noun) -> bool {
@@ -350,6 +355,7 @@ impl Reader<'_> {
                 noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
                 noun.generic = token.is(Sort::People);
+                noun.female = token.is(Sort::Female).then_some(true).or(token.is(Sort::Male).then_some(false));
                 self.at += 1;
                 // `nurse Agnes`
                 if !noun.several && let Some(name) = self.name() && let Head::Name(own) = name.head {
@@ -390,6 +396,11 @@ impl Reader<'_> {
             return true;
         }
         self.at = back;
+        // `as a group` tells how, and not who.
+        if own.is_none() && noun.pick != Pick::The {
+            self.at = back - 1;
+            return false;
+        }
         if let Some(count) = own.or(noun.count) {
             *noun = Noun { head: Head::Role("person".to_owned()), count: Some(count), several: true, group: true, ..noun.clone() };
             return true;
@@ -450,6 +461,9 @@ impl Reader<'_> {
         let figure = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|last| last.number().is_some());
         let acts = |token: &Token| token.is(Sort::Of) || token.is(Sort::Verb) || token.is(Sort::Be) || token.is(Sort::Do) || token.is(Sort::Modal);
         let several = noun.count.is_some_and(|count| count > 1);
+        if alone && figure && self.peek().is_some_and(|token| token.is(Sort::Be)) {
+            return None;
+        }
         if alone && (figure || several) && !self.peek().is_some_and(acts) && !(several && !figure && self.peek().is_some_and(|next| next.is(Sort::Looks) || next.sorts.is_empty())) {
             return None;
         }

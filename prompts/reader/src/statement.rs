@@ -206,7 +206,7 @@ impl Maker<'_> {
             self.say(tokens, Says::Background(reason));
             return;
         }
-        if let Some(why) = frame.unplayed.as_ref().filter(|_| !act.not) {
+        if let Some(why) = frame.unplayed.as_ref().filter(|_| !act.not && !robot) {
             self.say(tokens, Says::NotPlayed(why.clone()));
             return;
         }
@@ -230,6 +230,9 @@ impl Maker<'_> {
             (clause.subject.clone(), act.object.clone())
         };
         if who.is_empty() {
+            if !frame.plain {
+                self.say(tokens, Says::NotRead);
+            }
             return;
         }
         let about_robot = object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::Who));
@@ -332,10 +335,12 @@ impl Maker<'_> {
     fn places(&mut self, clause: &Clause, robot: bool) {
         let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
         let goes = robot && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes)));
+        let robot = robot || clause.subject.is_empty();
         let part = clause.acts.iter().filter(|act| robot && !act.not).find_map(|act| frame(act)?.part);
         let rank = match () {
+            () if clause.subject.is_empty() => 2,
             () if robot => 1,
-            () if clause.subject.is_empty() || clause.acts.is_empty() => 2,
+            () if clause.acts.is_empty() => 2,
             () => 3,
         };
         for At { class, to, from, token } in &clause.places {

@@ -96,6 +96,14 @@ pub(crate) fn story(told: &Told) -> Story {
             | Says::NotRead => {}
         }
     }
+    // Of several, some of whom come out, those who stay are inside.
+    if story.people.iter().any(|person| person.relation == Some(Relation::Leaving)) {
+        for person in story.people.iter_mut().filter(|person| person.relation == Some(Relation::Static)) {
+            if person.steps.iter().any(|step| step.act == Act::StandStill) {
+                person.relation = Some(Relation::Staying);
+            }
+        }
+    }
     // Whoever comes out, or stays inside, is where the robot goes.
     let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
     if story.place.is_none() && story.people.iter().any(inside) {

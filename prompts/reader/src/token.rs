@@ -47,6 +47,10 @@ pub(crate) enum Sort {
     Into,
     Later,
     Title,
+    /// Ends a verb, and is never skipped: `aside`, `out`.
+    Particle,
+    Female,
+    Male,
     With,
     // Words with a meaning of their own.
     Robot,
