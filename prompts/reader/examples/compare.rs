@@ -85,7 +85,7 @@ fn new_view(read: &Read) -> View {
         let mut lasted = None;
         for step in &person.steps {
             facts.extend(step.says.map(|sign| format!("{n} says {sign}")));
-            let act = format!("{n}: {}", act_name(step.act, step.whom));
+            let act = format!("{n}: {}", act_name(step.act, step.whom.filter(|_| step.act == Act::Follow)));
             facts.insert(act.clone());
             facts.extend(step.for_s.map(|secs| format!("{act} for {}", number(secs))));
             let when = if step.when.is_empty() { &before } else { &step.when };

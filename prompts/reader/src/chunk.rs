@@ -176,7 +176,7 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
             .filter_map(|pattern| Some((end_of(tokens, start, pattern)?, pattern.row)))
             .max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))
     };
-    let (mut end, row) = longest(at).or_else(|| longest(start))?;
+    let (mut end, row) = (at..=start).find_map(longest)?;
     // `room 214`, `ward B`.
     let named = |token: &Token| {
         token.number().is_some() || token.text.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word

@@ -548,18 +548,23 @@ impl Parser<'_> {
 
     /// A place with the word before it: `to the exit`, `from a room`.
     fn place_at(&self, class: Option<PlaceClass>, at: usize) -> At {
-        let before = at.checked_sub(1).and_then(|at| self.chunks.get(at));
+        let articles = |chunk: &&Chunk| chunk.word(Sort::Definite) || chunk.word(Sort::Indefinite) || matches!(chunk.is, Is::Whose(_));
+        let before = self.chunks.get(..at).unwrap_or_default().iter().rev().find(|chunk| !articles(chunk));
         let to = before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into));
         let from = before.is_some_and(|before| before.word(Sort::From));
         At { class, to, from, token: self.chunks.get(at).map_or(0, |chunk| chunk.tokens.start) }
     }
 
     fn word(&mut self, not: &mut bool, clause: &mut Clause) {
-        let Some(chunk) = self.peek() else { return };
+        let quoted = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.is_mark(Mark::Quote) || before.is_mark(Mark::Colon));
+        if quoted && !clause.subject.is_empty() && self.said(clause) {
+            return;
+        }
         if let Some(found) = longest(self.chunks, self.at, &self.lexicon.frame_patterns) {
             self.predicate(found, not, clause);
             return;
         }
+        let Some(chunk) = self.chunks.get(self.at) else { return };
         let obeys = clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
         if chunk.word(Sort::Do) {
             clause.does = Some(!*not);
@@ -582,6 +587,18 @@ impl Parser<'_> {
             clause.left.extend(chunk.tokens.clone());
         }
         self.at += 1;
+    }
+
+    /// `Robot: "excuse me"`: what is said, without a word for saying it.
+    fn said(&mut self, clause: &mut Clause) -> bool {
+        let start = self.token();
+        let Some(row) = self.lexicon.frames.iter().position(|frame| frame.asks) else { return false };
+        let Some(found) = longest(self.chunks, self.at, &self.lexicon.sign_patterns) else { return false };
+        let sign = self.lexicon.signs.get(found.row).map(|row| row.says);
+        self.at = found.end;
+        let tokens = start..self.token();
+        clause.acts.push(Predicate { row, object: None, owner: None, not: false, passive: false, sign, tokens });
+        true
     }
 
     fn predicate(&mut self, found: Found, not: &mut bool, clause: &mut Clause) {

@@ -166,6 +166,10 @@ impl Cast {
             reason.sign = sign_for(act);
         }
         self.last.clone_from(&who);
+        if let Some(whom) = whom.as_ref().filter(|whom| act == Act::Sign && !whom.is_empty()) {
+            // Whoever is asked is spoken of next.
+            self.before = std::mem::replace(&mut self.last, whom.clone());
+        }
         if act == Act::Sign && !deed.not && says != Some(Gesture::Acknowledged) {
             // Whoever makes a sign is reacted to by others.
             let reason = Reason { who: Some(who.clone()), cue: Cue::Says, sign: says, amount: None };
@@ -327,7 +331,7 @@ impl Cast {
     fn role(&mut self, noun: &Noun, role: &str) -> People {
         let count = noun.count.map_or(if noun.several { SEVERAL } else { 1 }, |count| usize::try_from(count).unwrap_or(MOST));
         let anybody = ANYBODY.contains(&role);
-        if self.tells && noun.pick != Pick::The && !self.unnamed.is_empty() && self.unnamed.len() >= count {
+        if self.tells && !matches!(noun.pick, Pick::The | Pick::None) && !self.unnamed.is_empty() && self.unnamed.len() >= count {
             let named: People = self.unnamed.drain(..count).collect();
             for person in &named {
                 if let Some(own) = self.roles.get_mut(*person) {
@@ -370,7 +374,7 @@ impl Cast {
             None => {
                 let role = noun.beside.clone().unwrap_or_else(|| "person".to_owned());
                 // Those of whom a colon tells: `two interns: Anna and Ben`.
-                let unnamed = if self.tells && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
+                let unnamed = if noun.beside.is_none() && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
                 let person = unnamed.or_else(|| self.numbered(noun)).unwrap_or(self.roles.len());
                 if person == self.roles.len() {
                     self.roles.push(role);

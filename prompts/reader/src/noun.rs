@@ -66,6 +66,8 @@ pub(crate) struct Noun {
     pub(crate) beside: Option<String>,
     /// Their names, of several: `two colleagues, Ben and Carla`.
     pub(crate) names: Vec<String>,
+    /// Whether it can be no object: `he`.
+    pub(crate) nominative: bool,
     /// Whether a woman is meant, or a man.
     pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
@@ -88,6 +90,7 @@ impl Noun {
             pace_mps: None,
             beside: None,
             names: Vec::new(),
+            nominative: false,
             female: None,
             generic: false,
             of: None,
@@ -210,6 +213,7 @@ impl Reader<'_> {
         };
         let mut noun = Noun::new(head, self.at..self.at + 1);
         noun.several = noun.head == Head::They;
+        noun.nominative = token.is(Sort::Nominative);
         noun.female = token.is(Sort::Female).then_some(true).or(token.is(Sort::Male).then_some(false));
         if matches!(noun.head, Head::Role(_)) {
             noun.pick = Pick::Some;
@@ -231,7 +235,9 @@ impl Reader<'_> {
         let of_label = at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Label));
         let letter = !of_label && (token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h']) || token.capital && token.text == "a" && next_acts);
         let digit = token.text.len() <= 4 && token.kind == Kind::Word && token.text.ends_with(|c: char| c.is_ascii_digit()) && token.sorts.is_empty();
-        let known = |token: &Token| !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2;
+        let words = &self.lexicon.words;
+        let counts = words.numbers.contains_key(&token.lemma) || words.ordinals.contains_key(&token.lemma);
+        let known = |token: &Token| counts || !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2;
         if known(token) && !letter && !digit {
             return None;
         }
@@ -284,7 +290,9 @@ impl Reader<'_> {
                 noun.pick = if noun.pick == Pick::Some { Pick::Another } else { Pick::Others };
             } else if token.is(Sort::Former) {
                 noun.pick = Pick::Former;
-            } else if let Some(ordinal) = words.ordinals.get(&token.lemma).filter(|_| noun.pick != Pick::Plain || self.at > start) {
+            } else if let Some(ordinal) = words.ordinals.get(&token.lemma).filter(|_| {
+                noun.pick != Pick::Plain || self.at > start || self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People))
+            }) {
                 noun.ordinal = Some(*ordinal);
             } else if let Some(count) = self.count() {
                 if self.tokens.get(self.at + 1).is_some_and(|next| self.is_unit(next)) {
@@ -456,19 +464,18 @@ impl Reader<'_> {
         if !told || !picks {
             return None;
         }
+        self.of(&mut noun);
         // `at 4`, `around ten`: a number alone is nobody, unless they do something.
         let alone = noun.pick == Pick::Some && noun.ordinal.is_none();
         let figure = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|last| last.number().is_some());
         let acts = |token: &Token| token.is(Sort::Of) || token.is(Sort::Verb) || token.is(Sort::Be) || token.is(Sort::Do) || token.is(Sort::Modal);
         let several = noun.count.is_some_and(|count| count > 1);
-        if alone && figure && self.peek().is_some_and(|token| token.is(Sort::Be)) {
+        if alone && figure && noun.of.is_none() && self.peek().is_some_and(|token| token.is(Sort::Be) || token.is(Sort::Of) || token.is(Sort::Have)) {
             return None;
         }
         if alone && (figure || several) && !self.peek().is_some_and(acts) && !(several && !figure && self.peek().is_some_and(|next| next.is(Sort::Looks) || next.sorts.is_empty())) {
             return None;
         }
-        // `no reaction`, `another corridor`, `each time`.
-        self.of(&mut noun);
         let ends = |token: &Token| {
             let joins = [Sort::And, Sort::But, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Not, Sort::Of, Sort::Who, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Then, Sort::At, Sort::By, Sort::To, Sort::Verb, Sort::Cause];
             let number = self.lexicon.words.numbers.contains_key(&token.lemma);

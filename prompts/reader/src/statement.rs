@@ -256,7 +256,9 @@ impl Maker<'_> {
         }
         let does = frame.act.or_else(|| act.sign.map(|_| Act::Sign)).or_else(|| frame.obeys.then_some(Act::Navigate));
         if let Some(does) = does {
-            let deed = whole.deed(who, does, act, frame);
+            let somebody = |noun: &&Noun| matches!(noun.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::They);
+            let whom = act.object.as_ref().filter(|_| act.sign.is_some()).filter(somebody).map(|noun| vec![noun.clone()]);
+            let deed = Deed { whom, ..whole.deed(who, does, act, frame) };
             self.say(tokens, Says::Do(deed));
         } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
             let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m };

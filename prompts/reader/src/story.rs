@@ -283,7 +283,7 @@ impl fmt::Display for Story {
 
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.whom {
+        match self.whom.filter(|_| self.act == Act::Follow) {
             Some(whom) => write!(f, "follow {}", name(whom))?,
             None => f.write_str(self.act.name())?,
         }

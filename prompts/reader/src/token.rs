@@ -49,6 +49,8 @@ pub(crate) enum Sort {
     Title,
     /// Ends a verb, and is never skipped: `aside`, `out`.
     Particle,
+    /// Never an object: `he`.
+    Nominative,
     Female,
     Male,
     With,
