@@ -140,6 +140,7 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
     let number = token.number().or_else(|| words.numbers.get(&token.lemma).map(|number| f64::from(*number)));
     let (number, mut end) = match number {
         Some(number) => (number, at + 1),
+        None if token.is(Sort::Indefinite) && tokens.get(at + 1).is_some_and(|next| words.meters.contains_key(&next.lemma)) => (1.0, at + 1),
         None if token.lemma == "half" && tokens.get(at + 1).is_some_and(|next| next.is(Sort::Indefinite)) => (0.5, at + 2),
         None => return None,
     };
@@ -151,7 +152,10 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
     }
     let unit = tokens.get(end)?;
     if let Some(m) = words.meters.get(&unit.lemma) {
-        return Some((Amount::Distance(number * m), end + 1));
+        // `a metre and a half`
+        let more = half(end + 1, "and") && half(end + 3, "half");
+        let number = if more { number + 0.5 } else { number };
+        return Some((Amount::Distance(number * m), end + 1 + 3 * usize::from(more)));
     }
     words.seconds.get(&unit.lemma).map(|secs| (Amount::Time(number * secs), end + 1))
 }

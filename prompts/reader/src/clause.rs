@@ -131,7 +131,7 @@ impl Clause {
 
 /// The clauses of a text.
 pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
-    let mut parser = Parser { chunks, lexicon, at: 0, subject: Vec::new(), denied: false, found: Vec::new() };
+    let mut parser = Parser { chunks, lexicon, at: 0, subject: Vec::new(), person: Vec::new(), denied: false, found: Vec::new() };
     while parser.at < chunks.len() {
         parser.sentence();
     }
@@ -144,6 +144,8 @@ struct Parser<'a> {
     at: usize,
     /// The subject of the clause before, for an ellipsis.
     subject: Vec<Noun>,
+    /// The last subject that was no robot.
+    person: Vec<Noun>,
     /// Whether the clause before was denied: `doesn't stop or look`.
     denied: bool,
     found: Vec<Clause>,
@@ -399,7 +401,13 @@ impl Parser<'_> {
         if own {
             self.subject.clone_from(&clause.subject);
         } else {
-            clause.subject.clone_from(&self.subject);
+            // `robot 3 m away: stops`: not the robot, of which the reason tells.
+            let robot = !self.subject.is_empty() && self.subject.iter().all(|noun| noun.head == Head::Robot);
+            let answers = robot && matches!(join, Join::Colon | Join::Then) && !self.person.is_empty();
+            clause.subject.clone_from(if answers { &self.person } else { &self.subject });
+        }
+        if clause.subject.iter().any(|noun| !noun.may_be_robot()) && !inner {
+            self.person.clone_from(&clause.subject);
         }
         clause.tokens.end = self.token();
         clause
@@ -475,6 +483,12 @@ impl Parser<'_> {
         }
         let labeled = clause.subject.iter().all(|noun| noun.ordinal.is_some());
         let Head::Role(role) = noun.head.clone() else { return false };
+        // `the cleaner, a shy man, …` says no more.
+        let closed = marks(self.ahead(2)) && self.ahead(2).is_some_and(|chunk| chunk.is_mark(Mark::Comma));
+        if noun.female.is_some() && noun.pick == Pick::Some && !noun.several && closed && clause.subject.len() == 1 && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Comma)) && !self.ahead(3).is_some_and(|next| next.word(Sort::And) || next.noun().is_some()) {
+            self.at += 3;
+            return true;
+        }
         let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
         let label = |noun: &Noun| noun.ordinal.is_some() && matches!(noun.head, Head::Name(_));
         let named = |noun: &Noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none() || label(noun) || noun.generic;

@@ -36,8 +36,8 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
         cast.begin(statement);
         let says = cast.says(&statement.says);
         if let Some(says) = says {
-            let Statement { tokens, first, tells, .. } = statement;
-            told.push(Statement { tokens: tokens.clone(), first: *first, tells: *tells, says });
+            let Statement { tokens, first, tells, partly, .. } = statement;
+            told.push(Statement { partly: *partly, tokens: tokens.clone(), first: *first, tells: *tells, says });
         }
     }
     Told { roles: cast.roles, statements: told }
@@ -289,6 +289,12 @@ impl Cast {
             None if !self.set.is_empty() => self.set.clone(),
             None => self.everybody(),
         };
+        if let Some(except) = &noun.except {
+            let except = self.picks(except, &base).unwrap_or_default();
+            let rest: People = base.into_iter().filter(|person| !except.contains(person)).collect();
+            self.picked.clone_from(&rest);
+            return rest;
+        }
         match self.picks(noun, &base) {
             Some(people) => people,
             // `the five`, `both`, `none` of too few: as many as there are.
@@ -393,7 +399,8 @@ impl Cast {
     fn numbered(&self, noun: &Noun) -> Option<usize> {
         let number = usize::try_from(noun.ordinal?).ok()?;
         let role = noun.beside.as_deref();
-        let all = self.everybody().into_iter().filter(|person| self.roles.get(*person).map(String::as_str) == role);
+        let fits = |own: &String| role.map_or_else(|| ANYBODY.contains(&own.as_str()), |role| own == role);
+        let all = self.everybody().into_iter().filter(|person| self.roles.get(*person).is_some_and(fits));
         let all: People = all.filter(|person| !self.names.iter().any(|(name, named)| named == person && !name.ends_with(char::is_numeric))).collect();
         if all.len() > 1 { all.get(number.checked_sub(1)?).copied() } else { None }
     }

@@ -141,9 +141,7 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
     let text = piece.to_lowercase().replace('\u{2019}', "'");
     let (mut lemma, bent) = words.base(&text);
     let mut sorts = words.sorts(&text);
-    if sorts.is_empty() {
-        sorts = words.sorts(&lemma);
-    }
+    sorts = sorts.and(words.sorts(&lemma));
     if kind == Kind::Word && lemma == text && sorts.is_empty() && text.len() >= CORRECTED_FROM {
         if let Some(meant) = meant(&text, words) {
             lemma = words.base(&meant).0;

@@ -72,6 +72,8 @@ pub(crate) struct Noun {
     pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
     pub(crate) generic: bool,
+    /// But for whom: `all but the last`.
+    pub(crate) except: Option<Box<Noun>>,
     /// Of whom: `one of the workers`.
     pub(crate) of: Option<Box<Noun>>,
     /// The tokens of it.
@@ -93,6 +95,7 @@ impl Noun {
             nominative: false,
             female: None,
             generic: false,
+            except: None,
             of: None,
             tokens,
         }
@@ -190,6 +193,18 @@ impl Reader<'_> {
             noun.head = Head::They;
             return Some(noun);
         }
+        // `all but the last`
+        if noun.pick == Pick::All && self.peek().is_some_and(|token| token.is(Sort::But)) {
+            let back = self.at;
+            self.at += 1;
+            match self.noun() {
+                Some(except) => {
+                    noun.except = Some(Box::new(except));
+                    return Some(noun);
+                }
+                None => self.at = back,
+            }
+        }
         told |= self.determiner(&mut noun);
         told |= self.numbers(&mut noun);
         if self.head(&mut noun, told) {
@@ -250,8 +265,14 @@ impl Reader<'_> {
         if begins && title.is_none() && !self.tokens.get(at + 1).is_some_and(goes_on) {
             return None;
         }
+        let letter_name = letter;
         let mut noun = Noun::new(Head::Name(token.text.clone()), self.at..at + 1);
         noun.pick = Pick::The;
+        let last = token.text.chars().next_back();
+        noun.ordinal = match token.text.as_bytes() {
+            [letter] if letter_name => Some(u32::from(letter.saturating_sub(b'a')) + 1),
+            _ => last.and_then(|last| last.to_digit(10)),
+        };
         noun.beside = role;
         self.at = at + 1;
         Some(noun)
@@ -294,6 +315,9 @@ impl Reader<'_> {
                 noun.pick != Pick::Plain || self.at > start || self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People))
             }) {
                 noun.ordinal = Some(*ordinal);
+            } else if token.is(Sort::Number) && let Some(number) = self.tokens.get(self.at + 1).and_then(|next| self.number_of(next)) {
+                (noun.ordinal, noun.pick) = (Some(number), Pick::The);
+                self.at += 1;
             } else if let Some(count) = self.count() {
                 if self.tokens.get(self.at + 1).is_some_and(|next| self.is_unit(next)) {
                     break;
@@ -311,7 +335,10 @@ impl Reader<'_> {
     }
 
     fn count(&self) -> Option<u32> {
-        let token = self.peek()?;
+        self.peek().and_then(|token| self.number_of(token))
+    }
+
+    fn number_of(&self, token: &Token) -> Option<u32> {
         match token.kind {
             Kind::Number(number) if number.fract().abs() < f64::EPSILON && (0.0..=40.0).contains(&number) => {
                 format!("{number}").parse().ok()
@@ -366,7 +393,11 @@ impl Reader<'_> {
                 noun.female = token.is(Sort::Female).then_some(true).or(token.is(Sort::Male).then_some(false));
                 self.at += 1;
                 // `nurse Agnes`
-                if !noun.several && let Some(name) = self.name() && let Head::Name(own) = name.head {
+                if self.peek().is_some_and(|next| next.is(Sort::Called)) && self.tokens.get(self.at + 1).is_some_and(|next| next.capital) {
+                    self.at += 1;
+                }
+                let long = self.peek().is_some_and(|next| next.text.len() > 1 && !next.text.ends_with(|c: char| c.is_ascii_digit()));
+                if !noun.several && long && let Some(name) = self.name() && let Head::Name(own) = name.head {
                     noun.beside = Some(token_role(&noun.head));
                     noun.head = Head::Name(own);
                 }
@@ -375,7 +406,8 @@ impl Reader<'_> {
             if token.is(Sort::Group) && (told || next.is_some_and(|next| next.is(Sort::Of))) {
                 return self.group(noun);
             }
-            if !Self::modifies(token, told) {
+            let before_role = next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.text.ends_with("ing");
+            if !Self::modifies(token, told) && !before_role {
                 break;
             }
             if token.is(Sort::Slow) {

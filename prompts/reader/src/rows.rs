@@ -99,6 +99,8 @@ pub struct Frame {
     pub side: Option<Side>,
     /// What the person does.
     pub act: Option<Act>,
+    /// What the person does of whom it is denied: `does not move`.
+    pub denied: Option<Act>,
     /// Whether those of whom it is said are a group.
     pub group: bool,
     /// What it is as a reason, said of a person.

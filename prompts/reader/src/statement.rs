@@ -85,6 +85,8 @@ pub struct Deed<W> {
 /// A statement with where it stands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statement<W> {
+    /// Whether words of its clause were left over.
+    pub(crate) partly: bool,
     /// Its tokens.
     pub(crate) tokens: Range<usize>,
     /// Whether a sentence begins with it.
@@ -100,7 +102,7 @@ pub(crate) type Named = Vec<Noun>;
 
 /// The statements of a text.
 pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement<Named>> {
-    let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false };
+    let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false, partly: false };
     for clause in clauses {
         maker.first = clause.join == Join::Start;
         maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
@@ -114,11 +116,12 @@ struct Maker<'a> {
     found: Vec<Statement<Named>>,
     first: bool,
     tells: bool,
+    partly: bool,
 }
 
 impl Maker<'_> {
     fn say(&mut self, tokens: Range<usize>, says: Says<Named>) {
-        self.found.push(Statement { tokens, first: self.first, tells: self.tells, says });
+        self.found.push(Statement { partly: self.partly, tokens, first: self.first, tells: self.tells, says });
         self.first = false;
     }
 
@@ -128,10 +131,12 @@ impl Maker<'_> {
         let mixed = !people.is_empty() && people.len() < clause.subject.len();
         let of_people = mixed.then(|| Clause { subject: people, ..clause.clone() });
         let clause = of_people.as_ref().unwrap_or(clause);
+        self.partly = !clause.left.is_empty();
         let mut when = Vec::new();
         let mut until = Vec::new();
         let mut turned = false;
-        let denied = clause.acts.iter().any(|act| act.not);
+        let stays = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.denied.is_some());
+        let denied = clause.acts.iter().any(|act| act.not && !stays(act));
         for condition in &clause.conditions {
             let reason = self.reason(condition, &clause.subject);
             if reason.is_some() {
@@ -254,7 +259,7 @@ impl Maker<'_> {
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
         }
-        let does = frame.act.or_else(|| act.sign.map(|_| Act::Sign)).or_else(|| frame.obeys.then_some(Act::Navigate));
+        let does = frame.denied.filter(|_| act.not).or(frame.act).or_else(|| act.sign.map(|_| Act::Sign)).or_else(|| frame.obeys.then_some(Act::Navigate));
         if let Some(does) = does {
             let somebody = |noun: &&Noun| matches!(noun.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::They);
             let whom = act.object.as_ref().filter(|_| act.sign.is_some()).filter(somebody).map(|noun| vec![noun.clone()]);
@@ -391,7 +396,7 @@ impl Whole<'_> {
             when.push(Reason { who: None, cue: Cue::After, sign: None, amount: Some(secs) });
         }
         let none = clause.subject.iter().all(|noun| noun.pick == Pick::None) && !clause.subject.is_empty();
-        let not = (said.not || none) && !self.turned;
+        let not = (said.not || none) && !self.turned && (frame.denied.is_none() || none);
         let whom = None;
         let until = self.until.to_vec();
         Deed { who, act, whom, not, when, until, for_s: clause.lasts_s, says: said.sign, obeys: frame.obeys }

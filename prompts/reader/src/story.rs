@@ -96,6 +96,7 @@ pub(crate) fn story(told: &Told) -> Story {
             | Says::NotRead => {}
         }
     }
+    story.without(&unsure(told));
     // Of several, some of whom come out, those who stay are inside.
     if story.people.iter().any(|person| person.relation == Some(Relation::Leaving)) {
         for person in story.people.iter_mut().filter(|person| person.relation == Some(Relation::Static)) {
@@ -112,7 +113,48 @@ pub(crate) fn story(told: &Told) -> Story {
     story
 }
 
+/// People who are named in clauses that are not read, and of whom nothing is read anywhere.
+fn unsure(told: &Told) -> Vec<usize> {
+    let mut sure = vec![false; told.roles.len()];
+    let mut of = |who: &[usize]| {
+        for person in who {
+            if let Some(own) = sure.get_mut(*person) {
+                *own = true;
+            }
+        }
+    };
+    for statement in &told.statements {
+        match &statement.says {
+            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) => of(who),
+            Says::Do(deed) => {
+                of(&deed.who);
+                of(deed.whom.as_deref().unwrap_or_default());
+            }
+            Says::Introduce(who) | Says::RobotSays(_, Some(who)) if !statement.partly => of(who),
+            _ => {}
+        }
+    }
+    let unsure: Vec<usize> = (0..sure.len()).filter(|person| sure.get(*person) == Some(&false)).collect();
+    if unsure.len() < sure.len() { unsure } else { Vec::new() }
+}
+
 impl Story {
+    /// Takes people out, and numbers the others anew.
+    fn without(&mut self, out: &[usize]) {
+        let anew = |person: usize| person - out.iter().filter(|gone| **gone < person).count();
+        let mut number = 0;
+        self.people.retain(|_| {
+            number += 1;
+            !out.contains(&(number - 1))
+        });
+        for step in self.people.iter_mut().flat_map(|person| &mut person.steps) {
+            step.whom = step.whom.map(anew);
+            for reason in step.when.iter_mut().chain(&mut step.until) {
+                reason.who = reason.who.as_ref().map(|who| who.iter().copied().map(anew).collect());
+            }
+        }
+    }
+
     fn each(&mut self, who: &[usize], mut change: impl FnMut(&mut Person)) {
         for number in who {
             if let Some(person) = self.people.get_mut(*number) {

@@ -52,6 +52,10 @@ pub(crate) enum Sort {
     /// Never an object: `he`.
     Nominative,
     Female,
+    /// Before a name: `named`.
+    Called,
+    /// Before a number that tells which: `number five`, `#5`.
+    Number,
     Male,
     With,
     // Words with a meaning of their own.
@@ -81,6 +85,10 @@ impl Sorts {
 
     pub(crate) const fn has(self, sort: Sort) -> bool {
         self.0 & (1 << sort as u64) != 0
+    }
+
+    pub(crate) const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 
     pub(crate) const fn is_empty(self) -> bool {
