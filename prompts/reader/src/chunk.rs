@@ -82,6 +82,8 @@ pub(crate) fn chunks(tokens: &[Token], lexicon: &Lexicon) -> Vec<Chunk> {
     let mut at = 0;
     while let Some(token) = tokens.get(at) {
         let (is, end) = chunk(tokens, at, lexicon);
+        // `some room` may be room to pass.
+        let token = if matches!(is, Is::Place(_)) && token.is(Sort::Indefinite) { tokens.get(end - 1).unwrap_or(token) } else { token };
         found.push(Chunk {
             is,
             tokens: at..end,

@@ -125,7 +125,8 @@ impl Clause {
     }
 
     fn is_bare(&self) -> bool {
-        self.acts.is_empty() && self.places.is_empty() && self.within_m.is_none() && self.lasts_s.is_none() && self.after_s.is_none()
+        // What a word before the role says is no act of the clause yet.
+        self.acts.iter().all(|act| self.subject.iter().any(|noun| noun.tokens == act.tokens)) && self.places.is_empty() && self.within_m.is_none() && self.lasts_s.is_none() && self.after_s.is_none()
     }
 }
 
@@ -219,6 +220,7 @@ impl Parser<'_> {
                 clause.conditions.clone_from(&ahead);
             }
             self.share(&mut clause, first);
+            self.front(&clause, first);
             self.found.push(clause);
             (join, apart) = (Join::And, false);
         }
@@ -229,6 +231,16 @@ impl Parser<'_> {
             clause.conditions.push(condition);
             clause.conditions.append(&mut pending);
             self.found.push(clause);
+        }
+    }
+
+    /// `Coming towards the robot: a nurse`: what is said before its subject.
+    fn front(&mut self, clause: &Clause, first: usize) {
+        if clause.subject.is_empty() || clause.subject.iter().all(Noun::may_be_robot) {
+            return;
+        }
+        for before in self.found.iter_mut().skip(first).filter(|before| before.subject.is_empty() && !before.acts.is_empty()) {
+            before.subject.clone_from(&clause.subject);
         }
     }
 
@@ -332,6 +344,7 @@ impl Parser<'_> {
                 Is::Noun(noun) if clause.subject.is_empty() && (clause.is_bare() || !inner) && clause.acts.is_empty() => {
                     let noun = noun.clone();
                     not |= noun.pick == Pick::None;
+                    self.modifiers(&noun, &mut clause);
                     clause.subject.push(noun);
                     self.at += 1;
                     self.subject_list(&mut clause);
@@ -413,6 +426,19 @@ impl Parser<'_> {
         clause
     }
 
+    /// `an oncoming nurse`: a word before the role that says how they move.
+    fn modifiers(&self, noun: &Noun, clause: &mut Clause) {
+        for word in &noun.modifiers {
+            let patterns = &self.lexicon.frame_patterns;
+            let row = patterns.beginning(word).find(|pattern| pattern.slots.len() == 1).map(|pattern| pattern.row);
+            let relates = |row: &usize| self.lexicon.frames.get(*row).is_some_and(|frame| frame.relate.is_some());
+            if let Some(row) = row.filter(relates) {
+                let tokens = noun.tokens.clone();
+                clause.acts.push(Predicate { row, object: None, owner: None, not: false, passive: false, sign: None, tokens });
+            }
+        }
+    }
+
     /// A relative clause between commas, within a condition: a clause of its own.
     fn aside(&mut self) {
         self.at += 1;
@@ -449,7 +475,8 @@ impl Parser<'_> {
             }
             let Some(Is::Noun(noun)) = self.ahead(skip).map(|chunk| &chunk.is) else { return };
             // `A nurse, both …` tells more of the same.
-            if matches!(noun.pick, Pick::All | Pick::None) || noun.of.is_some() || noun.head == Head::Robot && !and {
+            let part = noun.head == Head::Bare && clause.subject.iter().any(|noun| noun.several);
+            if matches!(noun.pick, Pick::All | Pick::None) || part || noun.of.is_some() || noun.head == Head::Robot && !and {
                 return;
             }
             let noun = noun.clone();
@@ -491,7 +518,7 @@ impl Parser<'_> {
         }
         let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
         let label = |noun: &Noun| noun.ordinal.is_some() && matches!(noun.head, Head::Name(_));
-        let named = |noun: &Noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none() || label(noun) || noun.generic;
+        let named = |noun: &Noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none() || label(noun) || noun.generic || noun.head == Head::Bare && noun.ordinal.is_some();
         let acts = |next: &Chunk| next.word(Sort::Verb) && next.bent == Bent::S || next.word(Sort::Be) || next.word(Sort::And) || next.word(Sort::Modal);
         if !clause.subject.iter().all(named) || count != clause.subject.len() && !clause.subject.iter().all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1)))) || !marks(self.peek()) && !(labeled && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Colon))) || self.ahead(2).is_some_and(acts) {
             return false;

@@ -95,7 +95,11 @@ impl Cast {
             Says::Relate(who, relation, side) => Says::Relate(self.people(who), *relation, *side),
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
-            Says::Do(deed) => Says::Do(self.deed(deed)),
+            Says::Do(deed) => {
+                let deed = self.deed(deed);
+                // Of nobody nothing can be played.
+                if deed.who.is_empty() { Says::NotRead } else { Says::Do(deed) }
+            }
             Says::RobotSays(sign, to) => {
                 let to = to.as_ref().map(|to| self.people(to));
                 self.asked = sign.or(self.asked);
@@ -300,7 +304,11 @@ impl Cast {
             // `the five`, `both`, `none` of too few: as many as there are.
             None if matches!(noun.pick, Pick::The | Pick::All | Pick::None | Pick::Others | Pick::Former) && noun.ordinal.is_none() => base,
             None if noun.of.is_some() => base,
-            None => self.new_people(noun, "person"),
+            None => {
+                let role = base.first().and_then(|person| self.roles.get(*person)).cloned();
+                let another = role.filter(|_| noun.pick == Pick::Another || noun.ordinal.is_some());
+                self.new_people(noun, &another.unwrap_or_else(|| "person".to_owned()))
+            }
         }
     }
 
@@ -321,7 +329,7 @@ impl Cast {
                 let rest = if rest.len() == base.len() { base.iter().copied().filter(|person| !self.last.contains(person)).collect() } else { rest };
                 rest.into_iter().take(count.unwrap_or(MOST)).collect()
             }
-            (Pick::Another, _) => free.into_iter().take(count.unwrap_or(1)).collect(),
+            (Pick::Another, _) => free.into_iter().filter(|person| !self.last.contains(person)).take(count.unwrap_or(1)).collect(),
             (Pick::The, None) => base.iter().copied().take(count.unwrap_or(1)).collect(),
             (Pick::Plain | Pick::Some, None) => free.into_iter().take(count.unwrap_or(1)).collect(),
         };
@@ -381,7 +389,7 @@ impl Cast {
                 let role = noun.beside.clone().unwrap_or_else(|| "person".to_owned());
                 // Those of whom a colon tells: `two interns: Anna and Ben`.
                 let unnamed = if noun.beside.is_none() && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
-                let person = unnamed.or_else(|| self.numbered(noun)).unwrap_or(self.roles.len());
+                let person = unnamed.or_else(|| self.numbered(noun)).or_else(|| self.nameless(noun)).unwrap_or(self.roles.len());
                 if person == self.roles.len() {
                     self.roles.push(role);
                 }
@@ -393,6 +401,12 @@ impl Cast {
             }
         };
         vec![person]
+    }
+
+    /// The first of several who has no name, where a name comes up that nobody has.
+    fn nameless(&self, noun: &Noun) -> Option<usize> {
+        let named = |person: &usize| self.names.values().any(|own| own == person);
+        self.set.iter().copied().find(|person| noun.beside.is_none() && noun.ordinal.is_none() && !named(person))
     }
 
     /// `worker 2` of several workers; `B` of several people.

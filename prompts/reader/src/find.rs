@@ -96,7 +96,7 @@ fn matched(chunks: &[Chunk], at: usize, pattern: &Pattern, passive: bool) -> Opt
 fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
     let Some(chunk) = chunks.get(found.end) else { return false };
     let fits = match (part, &chunk.is) {
-        (Part::Word(words), Is::Word | Is::Place(_)) => (words.contains(&chunk.lemma) || words.contains(&chunk.text)) && chunk.tokens.len() == 1,
+        (Part::Word(words), Is::Word | Is::Place(_)) => (words.contains(&chunk.lemma) || words.contains(&chunk.text)) && (chunk.tokens.len() == 1 || chunk.tokens.len() == 2 && chunk.is != Is::Word),
         (Part::Anybody | Part::Robot | Part::Person, Is::Noun(noun)) if noun.nominative => false,
         (Part::Anybody, Is::Noun(noun)) => {
             found.object = Some(noun.clone());

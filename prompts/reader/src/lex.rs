@@ -43,10 +43,18 @@ fn unnumbered(tokens: Vec<Token>, words: &Words) -> Vec<Token> {
     let clock = |at: usize| number(at) && number(at + 2) && touch(at) && touch(at + 1) && tokens.get(at + 1).is_some_and(|token| token.is_mark(Mark::Colon));
     let of_clock = |at: usize| (0..3).any(|back| at.checked_sub(back).is_some_and(clock));
     // `three, no, two`
-    let no = |at: usize| tokens.get(at).is_some_and(|token| token.is(Sort::No)) && tokens.get(at + 1).is_some_and(|token| token.is_mark(Mark::Comma));
     let counts = |at: usize| number(at) || tokens.get(at).is_some_and(|token| words.numbers.contains_key(&token.lemma));
-    let taken_back = |at: usize| counts(at) && tokens.get(at + 1).is_some_and(|token| !token.is_said()) && no(at + 2) && counts(at + 4);
-    let of_correction = |at: usize| (0..4).any(|back| at.checked_sub(back).is_some_and(taken_back));
+    // The number taken back, a mark, words of regret, perhaps a mark again, and the number that is meant.
+    let regrets = |at: usize| tokens.get(at).is_some_and(|token| token.is(Sort::Regret));
+    let taken_back = |at: usize| -> usize {
+        if !counts(at) || !tokens.get(at + 1).is_some_and(|token| !token.is_said()) || !regrets(at + 2) {
+            return 0;
+        }
+        let behind = (at + 2..at + 6).find(|next| !regrets(*next)).unwrap_or(at + 6);
+        let meant = behind + usize::from(tokens.get(behind).is_some_and(|token| token.is_mark(Mark::Comma)));
+        if counts(meant) { meant - at } else { 0 }
+    };
+    let of_correction = |at: usize| (0..7).any(|back| at.checked_sub(back).is_some_and(|from| taken_back(from) > back));
     let keep: Vec<bool> = (0..tokens.len())
         .map(|at| !of_list(at) && !at.checked_sub(1).is_some_and(&of_list) && !of_clock(at) && !of_correction(at))
         .collect();

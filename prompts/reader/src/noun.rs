@@ -72,6 +72,8 @@ pub(crate) struct Noun {
     pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
     pub(crate) generic: bool,
+    /// Words before the role, in their base form.
+    pub(crate) modifiers: Vec<String>,
     /// But for whom: `all but the last`.
     pub(crate) except: Option<Box<Noun>>,
     /// Of whom: `one of the workers`.
@@ -95,6 +97,7 @@ impl Noun {
             nominative: false,
             female: None,
             generic: false,
+            modifiers: Vec::new(),
             except: None,
             of: None,
             tokens,
@@ -389,6 +392,7 @@ impl Reader<'_> {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
+                noun.modifiers = self.tokens.get(start..self.at).unwrap_or_default().iter().map(|token| token.lemma.clone()).collect();
                 noun.generic = token.is(Sort::People);
                 noun.female = token.is(Sort::Female).then_some(true).or(token.is(Sort::Male).then_some(false));
                 self.at += 1;

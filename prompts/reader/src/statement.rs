@@ -34,7 +34,7 @@ pub enum Says<W> {
     /// Somebody is there.
     Introduce(W),
     /// How somebody stands to the robot's way.
-    Relate(W, Relation, Option<Side>),
+    Relate(W, Option<Relation>, Option<Side>),
     /// They are a group.
     Group(W),
     /// How fast somebody walks, m/s.
@@ -139,6 +139,9 @@ impl Maker<'_> {
         let denied = clause.acts.iter().any(|act| act.not && !stays(act));
         for condition in &clause.conditions {
             let reason = self.reason(condition, &clause.subject);
+            for object in condition.clause.acts.iter().filter_map(|act| act.object.clone()).filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_))) {
+                self.say(condition.clause.tokens.clone(), Says::Introduce(vec![object]));
+            }
             if reason.is_some() {
                 let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
                 self.places(&condition.clause, robot);
@@ -166,6 +169,10 @@ impl Maker<'_> {
             self.say(clause.tokens.clone(), Says::Do(deed));
         } else if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
             self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
+        }
+        // A reason for which nobody does anything yet is one for what comes.
+        if clause.acts.is_empty() && let Some(reason) = when.first() {
+            self.say(clause.tokens.clone(), Says::Then(reason.clone()));
         }
         let whole = Whole { clause, when: &when, until: &until, turned };
         for act in &clause.acts {
@@ -253,7 +260,8 @@ impl Maker<'_> {
     fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
         let tokens = act.tokens.clone();
         let waits = !whole.when.is_empty() && frame.act.is_some();
-        if let Some(relation) = frame.relate.filter(|_| !act.not && !waits) {
+        let relation = frame.relate.filter(|_| !act.not && !waits);
+        if relation.is_some() || frame.side.is_some() {
             self.say(tokens.clone(), Says::Relate(who.clone(), relation, frame.side));
         }
         if frame.group {
@@ -304,7 +312,7 @@ impl Maker<'_> {
         }
         let cue = frame.robot_cue.filter(|_| !act.not);
         match (frame.robot_relate, person) {
-            (Some(relation), Some(person)) if !act.not => self.say(tokens.clone(), Says::Relate(person, relation, None)),
+            (Some(relation), Some(person)) if !act.not => self.say(tokens.clone(), Says::Relate(person, Some(relation), None)),
             (_, Some(person)) => self.say(tokens.clone(), Says::Introduce(person)),
             (_, None) => {}
         }

@@ -69,6 +69,10 @@ pub(crate) fn story(told: &Told) -> Story {
     for statement in &told.statements {
         match &statement.says {
             Says::Relate(who, relation, side) => story.each(who, |person| {
+                let Some(relation) = relation else {
+                    person.side = side.or(person.side);
+                    return;
+                };
                 // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
                 let stands = person.relation.is_none() || person.relation == Some(Relation::Static);
                 if stands {

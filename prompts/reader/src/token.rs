@@ -54,6 +54,8 @@ pub(crate) enum Sort {
     Female,
     /// Before a name: `named`.
     Called,
+    /// Takes back what was said: `no`, `sorry`.
+    Regret,
     /// Before a number that tells which: `number five`, `#5`.
     Number,
     Male,
