@@ -142,9 +142,20 @@ fn tail(act: &str, rest: &[&str]) -> String {
 fn example_line(reader: &Reader, example: Example<'_>) {
     let story = reader.read(example.text).story.to_string();
     let by_text = matches!(example.file, "rewrites" | "scopes");
-    let holds = if by_text { story == reader.read(example.gives).story.to_string() } else { story.lines().any(|line| line.starts_with(example.gives)) };
+    let holds = if by_text {
+        story == reader.read(example.gives).story.to_string()
+    } else {
+        story.lines().any(|line| line.starts_with(example.gives))
+    };
     if holds != example.does {
-        println!("{} {}: {} `{}` of “{}”:\n{story}", example.file, example.row, if example.does { "misses" } else { "gives" }, example.gives, example.text);
+        println!(
+            "{} {}: {} `{}` of “{}”:\n{story}",
+            example.file,
+            example.row,
+            if example.does { "misses" } else { "gives" },
+            example.gives,
+            example.text
+        );
     }
 }
 
@@ -246,7 +257,8 @@ fn main() {
         }
         return;
     }
-    let options = Options { list: value("--list"), set: value("--set"), only_wrong: !words.iter().any(|word| word == "--all") };
+    let options =
+        Options { list: value("--list"), set: value("--set"), only_wrong: !words.iter().any(|word| word == "--all") };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../offline/corpus");
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .into_iter()
@@ -265,7 +277,8 @@ fn main() {
         let Ok(corpus) = toml::from_str::<Corpus>(&text) else { continue };
         for case in &corpus.request {
             let aside = name.starts_with("sealed") || held_out(&case.text);
-            let tally = judge(&reader, case, old.get(&hash(&case.text)), aside, &options, &mut kinds, &mut times, &mut unread);
+            let tally =
+                judge(&reader, case, old.get(&hash(&case.text)), aside, &options, &mut kinds, &mut times, &mut unread);
             tallies.entry((aside, name.trim_end_matches(".toml").to_owned())).or_default().add(&tally);
         }
     }
@@ -294,14 +307,22 @@ fn judge(
         let kind = kind(fact);
         let (old, right) = (old.holds(fact), new.holds(fact));
         let silent = !right && !new.honest;
-        let own = Tally { facts: 1, old: usize::from(old), new: usize::from(right), both: usize::from(old && right), silent: usize::from(silent), ..Tally::default() };
+        let own = Tally {
+            facts: 1,
+            old: usize::from(old),
+            new: usize::from(right),
+            both: usize::from(old && right),
+            silent: usize::from(silent),
+            ..Tally::default()
+        };
         if !kind.contains("problem") {
             tally.add(&own);
         }
         if !aside {
             kinds.entry(kind.clone()).or_default().add(&own);
         }
-        let wanted = options.list.as_ref().is_some_and(|list| kind == *list || list == "silent" && silent || list == "any");
+        let wanted =
+            options.list.as_ref().is_some_and(|list| kind == *list || list == "silent" && silent || list == "any");
         if wanted && !aside && (!right || !options.only_wrong) {
             if !shown || options.list.as_deref() == Some("any") && tally.facts == 1 {
                 println!("\n{}", case.text);
@@ -327,7 +348,13 @@ fn judge(
     tally
 }
 
-fn report(sets: bool, tallies: &BTreeMap<(bool, String), Tally>, kinds: &BTreeMap<String, Tally>, times: &mut [f64], unread: &BTreeMap<String, usize>) {
+fn report(
+    sets: bool,
+    tallies: &BTreeMap<(bool, String), Tally>,
+    kinds: &BTreeMap<String, Tally>,
+    times: &mut [f64],
+    unread: &BTreeMap<String, usize>,
+) {
     for aside in [false, true] {
         let mut all = Tally::default();
         println!("\n{}", if aside { "held out, and sets kept aside" } else { "worked on" });
@@ -343,7 +370,14 @@ fn report(sets: bool, tallies: &BTreeMap<(bool, String), Tally>, kinds: &BTreeMa
     let mut kinds: Vec<(&String, &Tally)> = kinds.iter().collect();
     kinds.sort_by_key(|(_, tally)| std::cmp::Reverse(tally.facts - tally.new));
     for (kind, tally) in kinds.iter().take(60) {
-        println!("{kind:<26} {:>5} facts  old {:>5}  new {:>5}  lost {:>4}  silent {:>4}", tally.facts, tally.old, tally.new, tally.facts - tally.new, tally.silent);
+        println!(
+            "{kind:<26} {:>5} facts  old {:>5}  new {:>5}  lost {:>4}  silent {:>4}",
+            tally.facts,
+            tally.old,
+            tally.new,
+            tally.facts - tally.new,
+            tally.silent
+        );
     }
     let mut unread: Vec<(&String, &usize)> = unread.iter().collect();
     unread.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
@@ -353,5 +387,9 @@ fn report(sets: bool, tallies: &BTreeMap<(bool, String), Tally>, kinds: &BTreeMa
     }
     times.sort_by(f64::total_cmp);
     let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
-    println!("\n{} requests, {mean:.0} µs each, {:.0} µs at the median", times.len(), times.get(times.len() / 2).copied().unwrap_or_default());
+    println!(
+        "\n{} requests, {mean:.0} µs each, {:.0} µs at the median",
+        times.len(),
+        times.get(times.len() / 2).copied().unwrap_or_default()
+    );
 }

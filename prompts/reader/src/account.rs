@@ -55,7 +55,8 @@ pub(crate) fn account(scene: &Scene, statements: &[Statement<People>]) -> Vec<Pi
             | Says::RobotGoal(_) => Fate::Read,
         };
         let own = scene.tokens.get(statement.tokens.clone()).unwrap_or_default();
-        let (Some(start), Some(end)) = (own.iter().map(|token| token.at.start).min(), own.iter().map(|token| token.at.end).max())
+        let (Some(start), Some(end)) =
+            (own.iter().map(|token| token.at.start).min(), own.iter().map(|token| token.at.end).max())
         else {
             continue;
         };

@@ -82,8 +82,9 @@ pub(crate) fn chunks(tokens: &[Token], lexicon: &Lexicon) -> Vec<Chunk> {
     let mut at = 0;
     while let Some(token) = tokens.get(at) {
         let (is, end) = chunk(tokens, at, lexicon);
-        // `some room` may be room to pass.
-        let token = if matches!(is, Is::Place(_)) && token.is(Sort::Indefinite) { tokens.get(end - 1).unwrap_or(token) } else { token };
+        // `some room` may be room to pass: the article stands alone.
+        let (is, end) =
+            if matches!(is, Is::Place(_)) && token.is(Sort::Indefinite) { (Is::Word, at + 1) } else { (is, end) };
         found.push(Chunk {
             is,
             tokens: at..end,
@@ -116,12 +117,20 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
         return (Is::Place(class), end);
     }
     if token.is(Sort::Possessive) {
-        let head = if token.is(Sort::He) { Head::He } else if token.text == "their" { Head::They } else { Head::It };
+        let head = if token.is(Sort::He) {
+            Head::He
+        } else if token.text == "their" {
+            Head::They
+        } else {
+            Head::It
+        };
         let head = if token.text == "his" { Head::He } else { head };
         return (Is::Whose(Noun::new(head, at..at + 1)), at + 1);
     }
     // `rack 12`, `shift 2`: the number is a name.
-    let named = token.is(Sort::Label) && tokens.get(at + 1).is_some_and(|next| next.number().is_some()) && amount(tokens, at + 1, lexicon).is_none();
+    let named = token.is(Sort::Label)
+        && tokens.get(at + 1).is_some_and(|next| next.number().is_some())
+        && amount(tokens, at + 1, lexicon).is_none();
     (Is::Word, at + 1 + usize::from(named))
 }
 
@@ -130,7 +139,11 @@ fn owns(tokens: &[Token], at: usize) -> bool {
     let ends = tokens.get(at).is_some_and(|token| token.text == OWNS);
     let next = tokens.get(at + 1);
     let is = |next: &Token| {
-        next.bent == Bent::Ing && next.is(Sort::Verb) || next.is(Sort::Not) || next.is(Sort::Indefinite) || next.is(Sort::At) || next.is(Sort::Definite)
+        next.bent == Bent::Ing && next.is(Sort::Verb)
+            || next.is(Sort::Not)
+            || next.is(Sort::Indefinite)
+            || next.is(Sort::At)
+            || next.is(Sort::Definite)
     };
     ends && next.is_some_and(|next| !is(next))
 }
@@ -142,8 +155,14 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
     let number = token.number().or_else(|| words.numbers.get(&token.lemma).map(|number| f64::from(*number)));
     let (number, mut end) = match number {
         Some(number) => (number, at + 1),
-        None if token.is(Sort::Indefinite) && tokens.get(at + 1).is_some_and(|next| words.meters.contains_key(&next.lemma)) => (1.0, at + 1),
-        None if token.lemma == "half" && tokens.get(at + 1).is_some_and(|next| next.is(Sort::Indefinite)) => (0.5, at + 2),
+        None if token.is(Sort::Indefinite)
+            && tokens.get(at + 1).is_some_and(|next| words.meters.contains_key(&next.lemma)) =>
+        {
+            (1.0, at + 1)
+        }
+        None if token.lemma == "half" && tokens.get(at + 1).is_some_and(|next| next.is(Sort::Indefinite)) => {
+            (0.5, at + 2)
+        }
         None => return None,
     };
     // `two and a half meters`, `1.5 or so`.
@@ -166,7 +185,10 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
 fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<PlaceClass>, usize)> {
     let mut start = at;
     while tokens.get(start).is_some_and(|token| {
-        token.is(Sort::Indefinite) || token.is(Sort::Definite) || token.is(Sort::Possessive) && start == at || token.is(Sort::Looks)
+        token.is(Sort::Indefinite)
+            || token.is(Sort::Definite)
+            || token.is(Sort::Possessive) && start == at
+            || token.is(Sort::Looks)
             || start > at && token.sorts.is_empty() && token.is_said() && token.bent == Bent::Base && start < at + 3
     }) && start < at + 4
     {
@@ -182,7 +204,7 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
             .filter_map(|pattern| Some((end_of(tokens, start, pattern)?, pattern.row)))
             .max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))
     };
-    let (mut end, row) = (at..=start).find_map(longest)?;
+    let (mut end, row) = (at..=start).filter_map(longest).max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))?;
     // `room 214`, `ward B`.
     let named = |token: &Token| {
         token.number().is_some() || token.text.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word

@@ -126,13 +126,18 @@ impl Clause {
 
     fn is_bare(&self) -> bool {
         // What a word before the role says is no act of the clause yet.
-        self.acts.iter().all(|act| self.subject.iter().any(|noun| noun.tokens == act.tokens)) && self.places.is_empty() && self.within_m.is_none() && self.lasts_s.is_none() && self.after_s.is_none()
+        self.acts.iter().all(|act| self.subject.iter().any(|noun| noun.tokens == act.tokens))
+            && self.places.is_empty()
+            && self.within_m.is_none()
+            && self.lasts_s.is_none()
+            && self.after_s.is_none()
     }
 }
 
 /// The clauses of a text.
 pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
-    let mut parser = Parser { chunks, lexicon, at: 0, subject: Vec::new(), person: Vec::new(), denied: false, found: Vec::new() };
+    let mut parser =
+        Parser { chunks, lexicon, at: 0, subject: Vec::new(), person: Vec::new(), denied: false, found: Vec::new() };
     while parser.at < chunks.len() {
         parser.sentence();
     }
@@ -210,7 +215,11 @@ impl Parser<'_> {
             }
             clause.tokens.end = self.token().max(clause.tokens.end);
             let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
-            if clause.acts.iter().all(plain) && clause.subject == before && self.found.len() > first && self.adds(&clause) {
+            if clause.acts.iter().all(plain)
+                && clause.subject == before
+                && self.found.len() > first
+                && self.adds(&clause)
+            {
                 continue;
             }
             if clause.conditions.is_empty() || !pending.is_empty() {
@@ -239,7 +248,9 @@ impl Parser<'_> {
         if clause.subject.is_empty() || clause.subject.iter().all(Noun::may_be_robot) {
             return;
         }
-        for before in self.found.iter_mut().skip(first).filter(|before| before.subject.is_empty() && !before.acts.is_empty()) {
+        for before in
+            self.found.iter_mut().skip(first).filter(|before| before.subject.is_empty() && !before.acts.is_empty())
+        {
             before.subject.clone_from(&clause.subject);
         }
     }
@@ -279,11 +290,19 @@ impl Parser<'_> {
             Is::Mark(Mark::Colon | Mark::Open) => Join::Colon,
             Is::Mark(Mark::Arrow) => Join::Then,
             Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) if join == Join::Start => Join::Start,
-            Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) => if matches!(join, Join::Colon) { join } else { Join::And },
+            Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) => {
+                if matches!(join, Join::Colon) {
+                    join
+                } else {
+                    Join::And
+                }
+            }
             Is::Mark(Mark::Quote) => join,
             Is::Word if chunk.word(Sort::But) => Join::But,
             // `while the other walks on` is a clause of its own.
-            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => Join::But,
+            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
+                Join::But
+            }
             Is::Word if chunk.word(Sort::Then) && !chunk.word(Sort::Not) => Join::Then,
             Is::Word if chunk.word(Sort::And) || chunk.lemma == "or" || chunk.lemma == "nor" => match join {
                 Join::Then | Join::Colon => join,
@@ -323,17 +342,29 @@ impl Parser<'_> {
         let mut clause = self.clause(Join::And, true);
         clause.tokens.start = start;
         // The subject of a condition is that of its clause as well: `when she sees it, stops`; but never the robot.
-        self.subject = if subject.is_empty() && !clause.subject.iter().any(Noun::may_be_robot) { clause.subject.clone() } else { subject };
+        self.subject = if subject.is_empty() && !clause.subject.iter().any(Noun::may_be_robot) {
+            clause.subject.clone()
+        } else {
+            subject
+        };
         self.denied = denied;
         Condition { tie, clause }
     }
 
     fn clause(&mut self, join: Join, inner: bool) -> Clause {
         let mut clause = Clause::new(join, self.token());
-        let mut not = self.denied && join == Join::And && self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.lemma == "or" || before.lemma == "nor");
+        let mut not = self.denied
+            && join == Join::And
+            && self.at > 0
+            && self.chunks.get(self.at - 1).is_some_and(|before| before.lemma == "or" || before.lemma == "nor");
         let mut own = self.relative(&mut clause);
         while let Some(chunk) = self.peek() {
-            if inner && chunk.is_mark(Mark::Comma) && clause.is_bare() && !clause.subject.is_empty() && self.ahead(1).is_some_and(|next| next.word(Sort::Who)) {
+            if inner
+                && chunk.is_mark(Mark::Comma)
+                && clause.is_bare()
+                && !clause.subject.is_empty()
+                && self.ahead(1).is_some_and(|next| next.word(Sort::Who))
+            {
                 self.aside();
                 continue;
             }
@@ -341,7 +372,9 @@ impl Parser<'_> {
                 break;
             }
             match &chunk.is {
-                Is::Noun(noun) if clause.subject.is_empty() && (clause.is_bare() || !inner) && clause.acts.is_empty() => {
+                Is::Noun(noun)
+                    if clause.subject.is_empty() && (clause.is_bare() || !inner) && clause.acts.is_empty() =>
+                {
                     let noun = noun.clone();
                     not |= noun.pick == Pick::None;
                     self.modifiers(&noun, &mut clause);
@@ -352,7 +385,15 @@ impl Parser<'_> {
                     own = true;
                 }
                 // `he is one of our pickers`
-                Is::Noun(noun) if clause.acts.is_empty() && self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::Be) || before.text == crate::lex::OWNS) && role_of(noun).is_some() => {
+                Is::Noun(noun)
+                    if clause.acts.is_empty()
+                        && self.at > 0
+                        && self
+                            .chunks
+                            .get(self.at - 1)
+                            .is_some_and(|before| before.word(Sort::Be) || before.text == crate::lex::OWNS)
+                        && role_of(noun).is_some() =>
+                {
                     let role = role_of(noun);
                     for noun in &mut clause.subject {
                         noun.beside.clone_from(&role);
@@ -360,7 +401,9 @@ impl Parser<'_> {
                     self.at += 1;
                 }
                 // `they all`, `both of them`, `does neither`
-                Is::Noun(noun) if noun.head == Head::Bare && matches!(noun.pick, Pick::All | Pick::None) && noun.of.is_none() => {
+                Is::Noun(noun)
+                    if noun.head == Head::Bare && matches!(noun.pick, Pick::All | Pick::None) && noun.of.is_none() =>
+                {
                     if noun.pick == Pick::None {
                         not = true;
                         clause.does = clause.does.map(|_| false);
@@ -369,10 +412,18 @@ impl Parser<'_> {
                 }
                 Is::Noun(noun) => {
                     let noun = noun.clone();
-                    if self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::By)) && clause.acts.iter().any(|act| act.passive) {
+                    if self.at > 0
+                        && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::By))
+                        && clause.acts.iter().any(|act| act.passive)
+                    {
                         clause.agent = Some(noun);
                     } else {
-                        if !self.at.checked_sub(1).and_then(|at| self.chunks.get(at)).is_some_and(|before| before.word(Sort::With)) {
+                        if !self
+                            .at
+                            .checked_sub(1)
+                            .and_then(|at| self.chunks.get(at))
+                            .is_some_and(|before| before.word(Sort::With))
+                        {
                             clause.left.extend(noun.tokens.clone());
                         }
                         if names_somebody(&noun) {
@@ -434,7 +485,15 @@ impl Parser<'_> {
             let relates = |row: &usize| self.lexicon.frames.get(*row).is_some_and(|frame| frame.relate.is_some());
             if let Some(row) = row.filter(relates) {
                 let tokens = noun.tokens.clone();
-                clause.acts.push(Predicate { row, object: None, owner: None, not: false, passive: false, sign: None, tokens });
+                clause.acts.push(Predicate {
+                    row,
+                    object: None,
+                    owner: None,
+                    not: false,
+                    passive: false,
+                    sign: None,
+                    tokens,
+                });
             }
         }
     }
@@ -476,7 +535,11 @@ impl Parser<'_> {
             let Some(Is::Noun(noun)) = self.ahead(skip).map(|chunk| &chunk.is) else { return };
             // `A nurse, both …` tells more of the same.
             let part = noun.head == Head::Bare && clause.subject.iter().any(|noun| noun.several);
-            if matches!(noun.pick, Pick::All | Pick::None) || part || noun.of.is_some() || noun.head == Head::Robot && !and {
+            if matches!(noun.pick, Pick::All | Pick::None)
+                || part
+                || noun.of.is_some()
+                || noun.head == Head::Robot && !and
+            {
                 return;
             }
             let noun = noun.clone();
@@ -488,7 +551,8 @@ impl Parser<'_> {
     /// `two colleagues, Ben and Carla`: the names of those before them.
     fn names(clause: &mut Clause) {
         let Some((first, rest)) = clause.subject.split_first() else { return };
-        let all = rest.iter().filter_map(|noun| if let Head::Name(name) = &noun.head { Some(name.clone()) } else { None });
+        let all =
+            rest.iter().filter_map(|noun| if let Head::Name(name) = &noun.head { Some(name.clone()) } else { None });
         let all: Vec<String> = all.collect();
         let count = usize::try_from(first.count.unwrap_or(1)).unwrap_or(1);
         if !all.is_empty() && all.len() == rest.len() && all.len() == count && matches!(first.head, Head::Role(_)) {
@@ -499,7 +563,12 @@ impl Parser<'_> {
 
     /// `Tom, a student, …`, `Anna and Ben (two interns)`: what somebody is, beside their name.
     fn beside(&mut self, clause: &mut Clause) -> bool {
-        let marks = |chunk: Option<&Chunk>| matches!(chunk.map(|chunk| &chunk.is), Some(Is::Mark(Mark::Comma | Mark::Open | Mark::Close | Mark::Dash | Mark::Stop)) | None);
+        let marks = |chunk: Option<&Chunk>| {
+            matches!(
+                chunk.map(|chunk| &chunk.is),
+                Some(Is::Mark(Mark::Comma | Mark::Open | Mark::Close | Mark::Dash | Mark::Stop)) | None
+            )
+        };
         let Some(Is::Noun(noun)) = self.ahead(1).map(|chunk| &chunk.is) else { return false };
         let opens = self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Open));
         // `the driver (actor 1)`
@@ -512,18 +581,48 @@ impl Parser<'_> {
         let Head::Role(role) = noun.head.clone() else { return false };
         // `the cleaner, a shy man, …` says no more.
         let closed = marks(self.ahead(2)) && self.ahead(2).is_some_and(|chunk| chunk.is_mark(Mark::Comma));
-        if noun.female.is_some() && noun.pick == Pick::Some && !noun.several && closed && clause.subject.len() == 1 && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Comma)) && !self.ahead(3).is_some_and(|next| next.word(Sort::And) || next.noun().is_some()) {
+        if noun.female.is_some()
+            && noun.pick == Pick::Some
+            && !noun.several
+            && closed
+            && clause.subject.len() == 1
+            && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Comma))
+            && !self.ahead(3).is_some_and(|next| next.word(Sort::And) || next.noun().is_some())
+        {
             self.at += 3;
             return true;
         }
         let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
         let label = |noun: &Noun| noun.ordinal.is_some() && matches!(noun.head, Head::Name(_));
-        let named = |noun: &Noun| matches!(noun.head, Head::Name(_)) && noun.beside.is_none() || label(noun) || noun.generic || noun.head == Head::Bare && noun.ordinal.is_some();
-        let acts = |next: &Chunk| next.word(Sort::Verb) && next.bent == Bent::S || next.word(Sort::Be) || next.word(Sort::And) || next.word(Sort::Modal);
-        if !clause.subject.iter().all(named) || count != clause.subject.len() && !clause.subject.iter().all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1)))) || !marks(self.peek()) && !(labeled && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Colon))) || self.ahead(2).is_some_and(acts) {
+        let named = |noun: &Noun| {
+            matches!(noun.head, Head::Name(_)) && noun.beside.is_none()
+                || label(noun)
+                || noun.generic
+                || noun.head == Head::Bare && noun.ordinal.is_some()
+        };
+        let acts = |next: &Chunk| {
+            next.word(Sort::Verb) && next.bent == Bent::S
+                || next.word(Sort::Be)
+                || next.word(Sort::And)
+                || next.word(Sort::Modal)
+        };
+        if !clause.subject.iter().all(named)
+            || count != clause.subject.len()
+                && !clause
+                    .subject
+                    .iter()
+                    .all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1))))
+            || !marks(self.peek()) && !(labeled && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Colon)))
+            || self.ahead(2).is_some_and(acts)
+        {
             return false;
         }
-        if count != clause.subject.len() && clause.subject.iter().any(|noun| noun.several && noun.count.is_none_or(|own| usize::try_from(own) != Ok(count))) {
+        if count != clause.subject.len()
+            && clause
+                .subject
+                .iter()
+                .any(|noun| noun.several && noun.count.is_none_or(|own| usize::try_from(own) != Ok(count)))
+        {
             return false;
         }
         for noun in &mut clause.subject {
@@ -541,21 +640,45 @@ impl Parser<'_> {
         let Some(chunk) = self.peek() else { return true };
         match &chunk.is {
             Is::Mark(Mark::Quote) => false,
-            Is::Mark(Mark::Comma) => !(clause.is_bare() && !clause.subject.is_empty() && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) && next.bent == Bent::Ing)),
+            Is::Mark(Mark::Comma) => {
+                !(clause.is_bare()
+                    && !clause.subject.is_empty()
+                    && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) && next.bent == Bent::Ing))
+            }
             Is::Mark(_) => true,
             Is::Noun(noun) => {
-                let by = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.word(Sort::By) || before.word(Sort::At) || before.word(Sort::To) || before.word(Sort::Of) || before.lemma == "than" || before.lemma == "with");
+                let by = self.at > 0
+                    && self.chunks.get(self.at - 1).is_some_and(|before| {
+                        before.word(Sort::By)
+                            || before.word(Sort::At)
+                            || before.word(Sort::To)
+                            || before.word(Sort::Of)
+                            || before.lemma == "than"
+                            || before.lemma == "with"
+                    });
                 let complete = !clause.acts.is_empty() || inner && !clause.is_bare();
                 complete && !by && noun.tokens.start > 0
             }
-            Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.lemma == "or" || chunk.lemma == "nor" => true,
+            Is::Word
+                if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.lemma == "or" || chunk.lemma == "nor" =>
+            {
+                true
+            }
             Is::Word if chunk.word(Sort::Then) => true,
-            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => !clause.is_bare() || !clause.subject.is_empty(),
-            Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => !clause.subject.is_empty() || !clause.acts.is_empty(),
+            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
+                !clause.is_bare() || !clause.subject.is_empty()
+            }
+            Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => {
+                !clause.subject.is_empty() || !clause.acts.is_empty()
+            }
             // `that` after a noun begins a relative clause.
             Is::Word if chunk.word(Sort::Who) => {
-                let after_noun = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.noun().is_some());
-                after_noun && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) || next.word(Sort::Be) || next.word(Sort::Modal))
+                let after_noun =
+                    self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.noun().is_some());
+                after_noun
+                    && self
+                        .ahead(1)
+                        .is_some_and(|next| next.word(Sort::Verb) || next.word(Sort::Be) || next.word(Sort::Modal))
             }
             Is::Word if inner => {
                 // `until it has passed does he go on`
@@ -589,15 +712,25 @@ impl Parser<'_> {
 
     /// A place with the word before it: `to the exit`, `from a room`.
     fn place_at(&self, class: Option<PlaceClass>, at: usize) -> At {
-        let articles = |chunk: &&Chunk| chunk.word(Sort::Definite) || chunk.word(Sort::Indefinite) || matches!(chunk.is, Is::Whose(_));
+        let articles = |chunk: &&Chunk| {
+            chunk.is_mark(Mark::Colon)
+                || chunk.word(Sort::Definite)
+                || chunk.word(Sort::Indefinite)
+                || matches!(chunk.is, Is::Whose(_))
+        };
         let before = self.chunks.get(..at).unwrap_or_default().iter().rev().find(|chunk| !articles(chunk));
-        let to = before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into));
+        let to =
+            before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into) || before.word(Sort::For));
         let from = before.is_some_and(|before| before.word(Sort::From));
         At { class, to, from, token: self.chunks.get(at).map_or(0, |chunk| chunk.tokens.start) }
     }
 
     fn word(&mut self, not: &mut bool, clause: &mut Clause) {
-        let quoted = self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.is_mark(Mark::Quote) || before.is_mark(Mark::Colon));
+        let quoted = self.at > 0
+            && self
+                .chunks
+                .get(self.at - 1)
+                .is_some_and(|before| before.is_mark(Mark::Quote) || before.is_mark(Mark::Colon));
         if quoted && !clause.subject.is_empty() && self.said(clause) {
             return;
         }
@@ -606,7 +739,8 @@ impl Parser<'_> {
             return;
         }
         let Some(chunk) = self.chunks.get(self.at) else { return };
-        let obeys = clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
+        let obeys =
+            clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
         if chunk.word(Sort::Do) {
             clause.does = Some(!*not);
         }
@@ -676,7 +810,8 @@ impl Parser<'_> {
             return;
         }
         let tokens = start..self.token();
-        let act = Predicate { row: found.row, object: found.object, owner: found.owner, not: *not, passive, sign, tokens };
+        let act =
+            Predicate { row: found.row, object: found.object, owner: found.owner, not: *not, passive, sign, tokens };
         clause.acts.push(act);
     }
 
@@ -702,11 +837,19 @@ impl Parser<'_> {
             }
             match &chunk.is {
                 Is::Mark(Mark::Quote) => quoted = true,
-                Is::Mark(Mark::Comma | Mark::Colon) if !quoted && self.chunks.get(at + 1).is_some_and(|next| next.is_mark(Mark::Quote)) => {}
+                Is::Mark(Mark::Comma | Mark::Colon)
+                    if !quoted && self.chunks.get(at + 1).is_some_and(|next| next.is_mark(Mark::Quote)) => {}
                 Is::Mark(Mark::Comma) if quoted => {}
                 Is::Mark(_) => return None,
                 Is::Noun(_) => {}
-                Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::When) || chunk.word(Sort::Until) => return None,
+                Is::Word
+                    if chunk.word(Sort::And)
+                        || chunk.word(Sort::But)
+                        || chunk.word(Sort::When)
+                        || chunk.word(Sort::Until) =>
+                {
+                    return None;
+                }
                 Is::Word if says_nothing(chunk) || chunk.word(Sort::Not) => {}
                 Is::Word | Is::Whose(_) | Is::Place(_) | Is::Amount(_) => return None,
             }
@@ -733,8 +876,26 @@ fn names_somebody(noun: &Noun) -> bool {
 /// Whether a word says nothing of its own.
 pub(crate) fn says_nothing(chunk: &Chunk) -> bool {
     let silent = [
-        Sort::Fill, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Definite, Sort::Indefinite, Sort::To, Sort::Of, Sort::By, Sort::At,
-        Sort::From, Sort::Then, Sort::Who, Sort::And, Sort::While, Sort::Later, Sort::After, Sort::Before,
+        Sort::Fill,
+        Sort::Be,
+        Sort::Do,
+        Sort::Have,
+        Sort::Modal,
+        Sort::Definite,
+        Sort::Indefinite,
+        Sort::To,
+        Sort::Of,
+        Sort::By,
+        Sort::At,
+        Sort::From,
+        Sort::Then,
+        Sort::Who,
+        Sort::And,
+        Sort::While,
+        Sort::Later,
+        Sort::After,
+        Sort::Before,
     ];
-    chunk.is == Is::Word && silent.iter().any(|sort| chunk.sorts.has(*sort)) || chunk.is == Is::Word && chunk.text == crate::lex::OWNS
+    chunk.is == Is::Word && silent.iter().any(|sort| chunk.sorts.has(*sort))
+        || chunk.is == Is::Word && chunk.text == crate::lex::OWNS
 }

@@ -22,7 +22,8 @@ pub(crate) struct Told {
 }
 
 /// Words that mean anybody.
-const ANYBODY: &[&str] = &["person", "people", "human", "pedestrian", "individual", "participant", "actor", "agent", "somebody"];
+const ANYBODY: &[&str] =
+    &["person", "people", "human", "pedestrian", "individual", "participant", "actor", "agent", "somebody"];
 /// How many several people are of whom no number is said.
 const SEVERAL: usize = 2;
 /// No phrase means more people than this.
@@ -89,7 +90,11 @@ impl Cast {
                 // `three people get out, a cleaner, a doctor and a visitor`
                 let count: u32 = who.iter().map(|noun| noun.count.unwrap_or(1)).sum();
                 let all = who.len() > 1 && u32::try_from(self.unnamed.len()) == Ok(count);
-                self.tells |= all && self.unnamed.iter().all(|person| self.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str())));
+                self.tells |= all
+                    && self
+                        .unnamed
+                        .iter()
+                        .all(|person| self.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str())));
                 Says::Introduce(self.people(who))
             }
             Says::Relate(who, relation, side) => Says::Relate(self.people(who), *relation, *side),
@@ -302,7 +307,11 @@ impl Cast {
         match self.picks(noun, &base) {
             Some(people) => people,
             // `the five`, `both`, `none` of too few: as many as there are.
-            None if matches!(noun.pick, Pick::The | Pick::All | Pick::None | Pick::Others | Pick::Former) && noun.ordinal.is_none() => base,
+            None if matches!(noun.pick, Pick::The | Pick::All | Pick::None | Pick::Others | Pick::Former)
+                && noun.ordinal.is_none() =>
+            {
+                base
+            }
             None if noun.of.is_some() => base,
             None => {
                 let role = base.first().and_then(|person| self.roles.get(*person)).cloned();
@@ -326,10 +335,16 @@ impl Cast {
             (Pick::Former, _) => base.iter().copied().take(1).collect(),
             (Pick::Others, _) => {
                 let rest: People = base.iter().copied().filter(|person| !self.picked.contains(person)).collect();
-                let rest = if rest.len() == base.len() { base.iter().copied().filter(|person| !self.last.contains(person)).collect() } else { rest };
+                let rest = if rest.len() == base.len() {
+                    base.iter().copied().filter(|person| !self.last.contains(person)).collect()
+                } else {
+                    rest
+                };
                 rest.into_iter().take(count.unwrap_or(MOST)).collect()
             }
-            (Pick::Another, _) => free.into_iter().filter(|person| !self.last.contains(person)).take(count.unwrap_or(1)).collect(),
+            (Pick::Another, _) => {
+                free.into_iter().filter(|person| !self.last.contains(person)).take(count.unwrap_or(1)).collect()
+            }
             (Pick::The, None) => base.iter().copied().take(count.unwrap_or(1)).collect(),
             (Pick::Plain | Pick::Some, None) => free.into_iter().take(count.unwrap_or(1)).collect(),
         };
@@ -343,9 +358,14 @@ impl Cast {
     }
 
     fn role(&mut self, noun: &Noun, role: &str) -> People {
-        let count = noun.count.map_or(if noun.several { SEVERAL } else { 1 }, |count| usize::try_from(count).unwrap_or(MOST));
+        let count =
+            noun.count.map_or(if noun.several { SEVERAL } else { 1 }, |count| usize::try_from(count).unwrap_or(MOST));
         let anybody = ANYBODY.contains(&role);
-        if self.tells && !matches!(noun.pick, Pick::The | Pick::None) && !self.unnamed.is_empty() && self.unnamed.len() >= count {
+        if self.tells
+            && !matches!(noun.pick, Pick::The | Pick::None)
+            && !self.unnamed.is_empty()
+            && self.unnamed.len() >= count
+        {
             let named: People = self.unnamed.drain(..count).collect();
             for person in &named {
                 if let Some(own) = self.roles.get_mut(*person) {
@@ -357,16 +377,25 @@ impl Cast {
         let known: People = match () {
             () if anybody && !self.set.is_empty() && noun.several => self.set.clone(),
             () if anybody => self.everybody(),
-            () => self.everybody().into_iter().filter(|person| self.roles.get(*person).is_some_and(|own| own == role)).collect(),
+            () => self
+                .everybody()
+                .into_iter()
+                .filter(|person| self.roles.get(*person).is_some_and(|own| own == role))
+                .collect(),
         };
         let found = match noun.pick {
             Pick::Some | Pick::Another => None,
             // `the boys`, of whom nobody was called so: those of whom was spoken.
-            Pick::The | Pick::All if known.is_empty() && noun.several && self.set.len() >= SEVERAL => Some(self.set.clone()),
+            Pick::The | Pick::All if known.is_empty() && noun.several && self.set.len() >= SEVERAL => {
+                Some(self.set.clone())
+            }
             _ if known.is_empty() => None,
             Pick::The | Pick::Plain if noun.ordinal.is_none() && noun.count.is_none() && !noun.several => {
                 let recent = self.last.iter().rev().find(|person| known.contains(person)).copied();
-                recent.or_else(|| known.last().copied()).filter(|_| noun.pick == Pick::The || known.len() == 1).map(|person| vec![person])
+                recent
+                    .or_else(|| known.last().copied())
+                    .filter(|_| noun.pick == Pick::The || known.len() == 1)
+                    .map(|person| vec![person])
             }
             Pick::The | Pick::Plain if noun.several && noun.ordinal.is_none() => {
                 Some(known).filter(|known| known.len() > 1 && noun.count.is_none_or(|_| known.len() == count))
@@ -388,8 +417,10 @@ impl Cast {
             None => {
                 let role = noun.beside.clone().unwrap_or_else(|| "person".to_owned());
                 // Those of whom a colon tells: `two interns: Anna and Ben`.
-                let unnamed = if noun.beside.is_none() && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
-                let person = unnamed.or_else(|| self.numbered(noun)).or_else(|| self.nameless(noun)).unwrap_or(self.roles.len());
+                let unnamed =
+                    if noun.beside.is_none() && !self.unnamed.is_empty() { Some(self.unnamed.remove(0)) } else { None };
+                let person =
+                    unnamed.or_else(|| self.numbered(noun)).or_else(|| self.nameless(noun)).unwrap_or(self.roles.len());
                 if person == self.roles.len() {
                     self.roles.push(role);
                 }
@@ -415,7 +446,11 @@ impl Cast {
         let role = noun.beside.as_deref();
         let fits = |own: &String| role.map_or_else(|| ANYBODY.contains(&own.as_str()), |role| own == role);
         let all = self.everybody().into_iter().filter(|person| self.roles.get(*person).is_some_and(fits));
-        let all: People = all.filter(|person| !self.names.iter().any(|(name, named)| named == person && !name.ends_with(char::is_numeric))).collect();
+        let all: People = all
+            .filter(|person| {
+                !self.names.iter().any(|(name, named)| named == person && !name.ends_with(char::is_numeric))
+            })
+            .collect();
         if all.len() > 1 { all.get(number.checked_sub(1)?).copied() } else { None }
     }
 

@@ -27,7 +27,13 @@ pub(crate) fn all(lexicon: &Lexicon) -> Vec<Example<'_>> {
     frames.chain(places).chain(signs).chain(rewrites).chain(scopes).collect()
 }
 
-fn of<'a>(file: &'static str, row: &'a str, reads: &'a [String], not: &'a [String], gives: &'a str) -> Vec<Example<'a>> {
+fn of<'a>(
+    file: &'static str,
+    row: &'a str,
+    reads: &'a [String],
+    not: &'a [String],
+    gives: &'a str,
+) -> Vec<Example<'a>> {
     let one = |text: &'a String, does| Example { file, row, text, gives, does };
     reads.iter().map(|text| one(text, true)).chain(not.iter().map(|text| one(text, false))).collect()
 }

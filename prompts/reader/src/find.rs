@@ -38,7 +38,9 @@ pub(crate) fn longest(chunks: &[Chunk], at: usize, patterns: &Patterns) -> Optio
         Is::Amount(_) => (AMOUNT, AMOUNT),
         Is::Word | Is::Place(_) => (first.lemma.as_str(), first.text.as_str()),
     };
-    let be = |back: usize| at.checked_sub(back).and_then(|before| chunks.get(before)).is_some_and(|before| before.word(Sort::Be));
+    let be = |back: usize| {
+        at.checked_sub(back).and_then(|before| chunks.get(before)).is_some_and(|before| before.word(Sort::Be))
+    };
     let by = chunks.get(at + 1).is_some_and(|next| next.word(Sort::By));
     let passive = first.bent == Bent::Ed && (by || be(1) || be(2));
     let of_lemma = patterns.beginning(lemma);
@@ -96,7 +98,9 @@ fn matched(chunks: &[Chunk], at: usize, pattern: &Pattern, passive: bool) -> Opt
 fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
     let Some(chunk) = chunks.get(found.end) else { return false };
     let fits = match (part, &chunk.is) {
-        (Part::Word(words), Is::Word | Is::Place(_)) => (words.contains(&chunk.lemma) || words.contains(&chunk.text)) && (chunk.tokens.len() == 1 || chunk.tokens.len() == 2 && chunk.is != Is::Word),
+        (Part::Word(words), Is::Word | Is::Place(_)) => {
+            (words.contains(&chunk.lemma) || words.contains(&chunk.text)) && chunk.tokens.len() == 1
+        }
         (Part::Anybody | Part::Robot | Part::Person, Is::Noun(noun)) if noun.nominative => false,
         (Part::Anybody, Is::Noun(noun)) => {
             found.object = Some(noun.clone());
@@ -132,8 +136,21 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
 /// Articles, possessives and adverbs; never a word that joins, or denies.
 fn may_stand_between(chunk: &Chunk) -> bool {
     let joins = [
-        Sort::Not, Sort::To, Sort::Of, Sort::By, Sort::At, Sort::From, Sort::And, Sort::But, Sort::Who, Sort::When, Sort::While,
-        Sort::Until, Sort::Before, Sort::After, Sort::Particle,
+        Sort::Not,
+        Sort::To,
+        Sort::Of,
+        Sort::By,
+        Sort::At,
+        Sort::From,
+        Sort::And,
+        Sort::But,
+        Sort::Who,
+        Sort::When,
+        Sort::While,
+        Sort::Until,
+        Sort::Before,
+        Sort::After,
+        Sort::Particle,
     ];
     match &chunk.is {
         Is::Whose(_) => true,

@@ -10,7 +10,8 @@ use crate::token::{Bent, Kind, Mark, Sort, Token};
 use crate::words::Words;
 
 /// What stands for what it is short of: the rest of a word after its apostrophe.
-const SHORT: &[(&str, &str)] = &[("n't", "not"), ("'re", "be"), ("'m", "be"), ("'ll", "will"), ("'ve", "have"), ("'d", "would")];
+const SHORT: &[(&str, &str)] =
+    &[("n't", "not"), ("'re", "be"), ("'m", "be"), ("'ll", "will"), ("'ve", "have"), ("'d", "would")];
 /// The possessor's ending, or a short `is`: the chunker decides.
 pub(crate) const OWNS: &str = "'s";
 /// Words of fewer letters are not corrected.
@@ -31,16 +32,25 @@ pub(crate) fn lex(text: &str, words: &Words) -> Vec<Token> {
 
 /// The tokens without the numbers of a list: `1. The robot …`.
 fn unnumbered(tokens: Vec<Token>, words: &Words) -> Vec<Token> {
-    let stops = |token: Option<&Token>| token.is_none_or(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Colon));
-    let close = |token: Option<&Token>| token.is_some_and(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Close));
+    let stops =
+        |token: Option<&Token>| token.is_none_or(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Colon));
+    let close =
+        |token: Option<&Token>| token.is_some_and(|token| token.is_mark(Mark::Stop) || token.is_mark(Mark::Close));
     let of_list = |at: usize| {
         let before = at.checked_sub(1).and_then(|before| tokens.get(before));
         tokens.get(at).is_some_and(|token| token.number().is_some()) && stops(before) && close(tokens.get(at + 1))
     };
     let number = |at: usize| tokens.get(at).is_some_and(|token| token.number().is_some());
-    let touch = |at: usize| tokens.get(at).zip(tokens.get(at + 1)).is_some_and(|(one, next)| one.at.end == next.at.start);
+    let touch =
+        |at: usize| tokens.get(at).zip(tokens.get(at + 1)).is_some_and(|(one, next)| one.at.end == next.at.start);
     // `14:00` is a time of day.
-    let clock = |at: usize| number(at) && number(at + 2) && touch(at) && touch(at + 1) && tokens.get(at + 1).is_some_and(|token| token.is_mark(Mark::Colon));
+    let clock = |at: usize| {
+        number(at)
+            && number(at + 2)
+            && touch(at)
+            && touch(at + 1)
+            && tokens.get(at + 1).is_some_and(|token| token.is_mark(Mark::Colon))
+    };
     let of_clock = |at: usize| (0..3).any(|back| at.checked_sub(back).is_some_and(clock));
     // `three, no, two`
     let counts = |at: usize| number(at) || tokens.get(at).is_some_and(|token| words.numbers.contains_key(&token.lemma));
@@ -68,7 +78,12 @@ fn word(start: usize, piece: &str, words: &Words, tokens: &mut Vec<Token>) {
     if digits > 0 {
         let number = lower.get(..digits).unwrap_or_default().replace(',', ".");
         if let Ok(number) = number.parse::<f64>() {
-            tokens.push(token(start..start + digits, piece.get(..digits).unwrap_or_default(), Kind::Number(number), words));
+            tokens.push(token(
+                start..start + digits,
+                piece.get(..digits).unwrap_or_default(),
+                Kind::Number(number),
+                words,
+            ));
             if digits < piece.len() {
                 let rest = piece.get(digits..).unwrap_or_default();
                 tokens.push(token(start + digits..start + piece.len(), rest, Kind::Word, words));
@@ -77,7 +92,8 @@ fn word(start: usize, piece: &str, words: &Words, tokens: &mut Vec<Token>) {
         }
     }
     // The byte lengths differ where an apostrophe is a curly one: only the end is cut, and it is found in the piece itself.
-    let short = SHORT.iter().map(|(end, _)| *end).chain([OWNS]).find(|end| lower.ends_with(end) && lower.len() > end.len());
+    let short =
+        SHORT.iter().map(|(end, _)| *end).chain([OWNS]).find(|end| lower.ends_with(end) && lower.len() > end.len());
     let Some(end) = short else {
         tokens.push(token(start..start + piece.len(), piece, Kind::Word, words));
         return;
@@ -107,7 +123,9 @@ fn marks(start: usize, piece: &str, text: &str, words: &Words, tokens: &mut Vec<
         Some('(' | '[') => Mark::Open,
         Some(')' | ']') => Mark::Close,
         Some('"' | '“' | '”' | '„' | '«' | '»') => Mark::Quote,
-        Some('\'' | '‘' | '’' | '`') if !before.ends_with(char::is_alphanumeric) || !after.starts_with(char::is_alphanumeric) => {
+        Some('\'' | '‘' | '’' | '`')
+            if !before.ends_with(char::is_alphanumeric) || !after.starts_with(char::is_alphanumeric) =>
+        {
             Mark::Quote
         }
         Some('<' | '+' | '&' | '@' | '#') => {
@@ -156,7 +174,7 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
             sorts = words.sorts(&lemma);
         }
     }
-    let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase) ;
+    let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase);
     Token { at, text, lemma, kind, sorts, bent, capital }
 }
 

@@ -98,7 +98,9 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
         if let Some((end, row)) = row {
             let end = match row.extent {
                 Extent::Words => end,
-                Extent::Clause => ends(&tokens, end, |token| matches!(token.kind, Kind::Mark(mark) if mark != Mark::Quote)),
+                Extent::Clause => {
+                    ends(&tokens, end, |token| matches!(token.kind, Kind::Mark(mark) if mark != Mark::Quote))
+                }
                 Extent::Sentence => ends(&tokens, end, |token| token.is_mark(Mark::Stop)),
             };
             let from = if row.extent == Extent::Sentence {
@@ -107,8 +109,8 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
             } else {
                 at
             };
-            let whole = tokens.get(from).map_or(0, |token| token.at.start)
-                ..tokens.get(end - 1).map_or(0, |token| token.at.end);
+            let whole =
+                tokens.get(from).map_or(0, |token| token.at.start)..tokens.get(end - 1).map_or(0, |token| token.at.end);
             scene.background.push((whole, row.reason));
             if at == first {
                 first = end;

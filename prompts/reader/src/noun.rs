@@ -247,15 +247,28 @@ impl Reader<'_> {
         let at = self.at + usize::from(title.is_some());
         let token = self.tokens.get(at)?;
         let next_acts = self.tokens.get(at + 1).is_some_and(|next| {
-            next.is(Sort::Be) || next.is(Sort::Do) || next.is(Sort::Modal) || next.is_mark(Mark::Colon) || next.is(Sort::And) || next.is(Sort::Verb) && next.bent == Bent::S
+            next.is(Sort::Be)
+                || next.is(Sort::Do)
+                || next.is(Sort::Modal)
+                || next.is_mark(Mark::Colon)
+                || next.is(Sort::And)
+                || next.is(Sort::Verb) && next.bent == Bent::S
         });
         // `A walks ahead, B crosses`, `W1`, `ped2`.
-        let of_label = at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Label));
-        let letter = !of_label && (token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h']) || token.capital && token.text == "a" && next_acts);
-        let digit = token.text.len() <= 4 && token.kind == Kind::Word && token.text.ends_with(|c: char| c.is_ascii_digit()) && token.sorts.is_empty();
+        let of_label =
+            at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Label));
+        let letter = !of_label
+            && (token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h'])
+                || token.capital && token.text == "a" && next_acts);
+        let digit = token.text.len() <= 4
+            && token.kind == Kind::Word
+            && token.text.ends_with(|c: char| c.is_ascii_digit())
+            && token.sorts.is_empty();
         let words = &self.lexicon.words;
         let counts = words.numbers.contains_key(&token.lemma) || words.ordinals.contains_key(&token.lemma);
-        let known = |token: &Token| counts || !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2;
+        let known = |token: &Token| {
+            counts || !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2
+        };
         if known(token) && !letter && !digit {
             return None;
         }
@@ -263,7 +276,13 @@ impl Reader<'_> {
         let begins = at == 0 || self.tokens.get(at - 1).is_some_and(|before| !before.is_said());
         let goes_on = |next: &Token| {
             let sorts = [Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::And, Sort::Who];
-            letter || digit || sorts.iter().any(|sort| next.is(*sort)) || next.is(Sort::Verb) && next.bent == Bent::S || next.is_mark(Mark::Comma) || next.is_mark(Mark::Open) || next.text == crate::lex::OWNS
+            letter
+                || digit
+                || sorts.iter().any(|sort| next.is(*sort))
+                || next.is(Sort::Verb) && next.bent == Bent::S
+                || next.is_mark(Mark::Comma)
+                || next.is_mark(Mark::Open)
+                || next.text == crate::lex::OWNS
         };
         if begins && title.is_none() && !self.tokens.get(at + 1).is_some_and(goes_on) {
             return None;
@@ -283,7 +302,28 @@ impl Reader<'_> {
 
     /// Whether something can be somebody's: a thing, a part of the body, a way.
     fn can_be_owned(token: &Token) -> bool {
-        let joins = [Sort::At, Sort::To, Sort::Of, Sort::By, Sort::And, Sort::But, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Be, Sort::Modal, Sort::Not, Sort::Then, Sort::Who, Sort::Do, Sort::Cause, Sort::Definite, Sort::Indefinite];
+        let joins = [
+            Sort::At,
+            Sort::To,
+            Sort::Of,
+            Sort::By,
+            Sort::And,
+            Sort::But,
+            Sort::When,
+            Sort::While,
+            Sort::Until,
+            Sort::Before,
+            Sort::After,
+            Sort::Be,
+            Sort::Modal,
+            Sort::Not,
+            Sort::Then,
+            Sort::Who,
+            Sort::Do,
+            Sort::Cause,
+            Sort::Definite,
+            Sort::Indefinite,
+        ];
         let acts = token.is(Sort::Verb) && token.bent == Bent::S;
         token.kind == Kind::Word && !acts && !joins.iter().any(|sort| token.is(*sort)) && token.bent != Bent::Ing
     }
@@ -315,10 +355,14 @@ impl Reader<'_> {
             } else if token.is(Sort::Former) {
                 noun.pick = Pick::Former;
             } else if let Some(ordinal) = words.ordinals.get(&token.lemma).filter(|_| {
-                noun.pick != Pick::Plain || self.at > start || self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People))
+                noun.pick != Pick::Plain
+                    || self.at > start
+                    || self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People))
             }) {
                 noun.ordinal = Some(*ordinal);
-            } else if token.is(Sort::Number) && let Some(number) = self.tokens.get(self.at + 1).and_then(|next| self.number_of(next)) {
+            } else if token.is(Sort::Number)
+                && let Some(number) = self.tokens.get(self.at + 1).and_then(|next| self.number_of(next))
+            {
                 (noun.ordinal, noun.pick) = (Some(number), Pick::The);
                 self.at += 1;
             } else if let Some(count) = self.count() {
@@ -388,20 +432,38 @@ impl Reader<'_> {
                 self.at += 1;
                 return true;
             }
-            if (token.is(Sort::Role) || token.is(Sort::People)) && token.bent != Bent::Ing && !next.is_some_and(compound) {
+            if (token.is(Sort::Role) || token.is(Sort::People))
+                && token.bent != Bent::Ing
+                && !next.is_some_and(compound)
+            {
                 noun.head = Head::Role(token.lemma.clone());
-                noun.several = token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
+                noun.several =
+                    token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
-                noun.modifiers = self.tokens.get(start..self.at).unwrap_or_default().iter().map(|token| token.lemma.clone()).collect();
+                noun.modifiers = self
+                    .tokens
+                    .get(start..self.at)
+                    .unwrap_or_default()
+                    .iter()
+                    .map(|token| token.lemma.clone())
+                    .collect();
                 noun.generic = token.is(Sort::People);
                 noun.female = token.is(Sort::Female).then_some(true).or(token.is(Sort::Male).then_some(false));
                 self.at += 1;
                 // `nurse Agnes`
-                if self.peek().is_some_and(|next| next.is(Sort::Called)) && self.tokens.get(self.at + 1).is_some_and(|next| next.capital) {
+                if self.peek().is_some_and(|next| next.is(Sort::Called))
+                    && self.tokens.get(self.at + 1).is_some_and(|next| next.capital)
+                {
                     self.at += 1;
                 }
-                let long = self.peek().is_some_and(|next| next.text.len() > 1 && !next.text.ends_with(|c: char| c.is_ascii_digit()));
-                if !noun.several && long && let Some(name) = self.name() && let Head::Name(own) = name.head {
+                let long = self
+                    .peek()
+                    .is_some_and(|next| next.text.len() > 1 && !next.text.ends_with(|c: char| c.is_ascii_digit()));
+                if !noun.several
+                    && long
+                    && let Some(name) = self.name()
+                    && let Head::Name(own) = name.head
+                {
                     noun.beside = Some(token_role(&noun.head));
                     noun.head = Head::Name(own);
                 }
@@ -410,7 +472,8 @@ impl Reader<'_> {
             if token.is(Sort::Group) && (told || next.is_some_and(|next| next.is(Sort::Of))) {
                 return self.group(noun);
             }
-            let before_role = next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.text.ends_with("ing");
+            let before_role =
+                next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.text.ends_with("ing");
             if !Self::modifies(token, told) && !before_role {
                 break;
             }
@@ -434,7 +497,9 @@ impl Reader<'_> {
         });
         self.at += 1;
         let back = self.at;
-        if self.take(Sort::Of) && let Some(members) = self.noun() {
+        if self.take(Sort::Of)
+            && let Some(members) = self.noun()
+        {
             let pick = noun.pick;
             *noun = Noun { pick, count: members.count.or(own), several: true, group: true, ..members };
             return true;
@@ -446,7 +511,13 @@ impl Reader<'_> {
             return false;
         }
         if let Some(count) = own.or(noun.count) {
-            *noun = Noun { head: Head::Role("person".to_owned()), count: Some(count), several: true, group: true, ..noun.clone() };
+            *noun = Noun {
+                head: Head::Role("person".to_owned()),
+                count: Some(count),
+                several: true,
+                group: true,
+                ..noun.clone()
+            };
             return true;
         }
         (noun.head, noun.several) = (Head::They, true);
@@ -503,19 +574,59 @@ impl Reader<'_> {
         self.of(&mut noun);
         // `at 4`, `around ten`: a number alone is nobody, unless they do something.
         let alone = noun.pick == Pick::Some && noun.ordinal.is_none();
-        let figure = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|last| last.number().is_some());
-        let acts = |token: &Token| token.is(Sort::Of) || token.is(Sort::Verb) || token.is(Sort::Be) || token.is(Sort::Do) || token.is(Sort::Modal);
+        let figure =
+            self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|last| last.number().is_some());
+        let acts = |token: &Token| {
+            token.is(Sort::Of)
+                || token.is(Sort::Verb)
+                || token.is(Sort::Be)
+                || token.is(Sort::Do)
+                || token.is(Sort::Modal)
+        };
         let several = noun.count.is_some_and(|count| count > 1);
-        if alone && figure && noun.of.is_none() && self.peek().is_some_and(|token| token.is(Sort::Be) || token.is(Sort::Of) || token.is(Sort::Have)) {
+        if alone
+            && figure
+            && noun.of.is_none()
+            && self.peek().is_some_and(|token| token.is(Sort::Be) || token.is(Sort::Of) || token.is(Sort::Have))
+        {
             return None;
         }
-        if alone && (figure || several) && !self.peek().is_some_and(acts) && !(several && !figure && self.peek().is_some_and(|next| next.is(Sort::Looks) || next.sorts.is_empty())) {
+        if alone
+            && (figure || several)
+            && !self.peek().is_some_and(acts)
+            && !(several && !figure && self.peek().is_some_and(|next| next.is(Sort::Looks) || next.sorts.is_empty()))
+        {
             return None;
         }
         let ends = |token: &Token| {
-            let joins = [Sort::And, Sort::But, Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::Not, Sort::Of, Sort::Who, Sort::When, Sort::While, Sort::Until, Sort::Before, Sort::After, Sort::Then, Sort::At, Sort::By, Sort::To, Sort::Verb, Sort::Cause];
+            let joins = [
+                Sort::And,
+                Sort::But,
+                Sort::Be,
+                Sort::Do,
+                Sort::Have,
+                Sort::Modal,
+                Sort::Not,
+                Sort::Of,
+                Sort::Who,
+                Sort::When,
+                Sort::While,
+                Sort::Until,
+                Sort::Before,
+                Sort::After,
+                Sort::Then,
+                Sort::At,
+                Sort::By,
+                Sort::To,
+                Sort::Verb,
+                Sort::Cause,
+            ];
             let number = self.lexicon.words.numbers.contains_key(&token.lemma);
-            !token.is_said() || !token.is(Sort::Empty) && joins.iter().any(|sort| token.is(*sort)) || token.text.ends_with("ly") || token.is(Sort::Fill) && !token.is(Sort::Empty) || number
+            !token.is_said()
+                || !token.is(Sort::Empty) && joins.iter().any(|sort| token.is(*sort))
+                || token.text.ends_with("ly")
+                || token.is(Sort::Fill) && !token.is(Sort::Empty)
+                || number
         };
         let alone = noun.of.is_some() || self.peek().is_none_or(ends);
         (alone && noun.pick != Pick::None || noun.of.is_some() || noun.pick == Pick::None && alone).then(|| {

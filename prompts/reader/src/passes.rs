@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::Read;
 use crate::account::{Fate, account};
 use crate::chunk::{Chunk, chunks};
 use crate::clause::{Clause, clauses};
@@ -11,7 +12,6 @@ use crate::normalize::{Scene, normalize};
 use crate::statement::{Named, Says, Statement, statements};
 use crate::story::{Story, story};
 use crate::token::Token;
-use crate::Read;
 
 /// What each pass made of a text.
 #[derive(Debug, Clone)]

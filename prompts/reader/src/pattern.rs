@@ -57,7 +57,9 @@ pub(crate) struct Patterns {
 
 /// A pattern that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{phrase}`: `{part}` is no part of a pattern; the first part has to be a word or amount, and classes are those of words.toml")]
+#[error(
+    "`{phrase}`: `{part}` is no part of a pattern; the first part has to be a word or amount, and classes are those of words.toml"
+)]
 pub struct BadPattern {
     /// The pattern.
     pub phrase: String,

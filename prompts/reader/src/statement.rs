@@ -127,7 +127,8 @@ impl Maker<'_> {
 
     fn clause(&mut self, clause: &Clause) {
         // `a visitor and the robot come towards each other`: said of the visitor.
-        let people: Vec<Noun> = clause.subject.iter().filter(|noun| noun.may_be_person() && noun.head != Head::It).cloned().collect();
+        let people: Vec<Noun> =
+            clause.subject.iter().filter(|noun| noun.may_be_person() && noun.head != Head::It).cloned().collect();
         let mixed = !people.is_empty() && people.len() < clause.subject.len();
         let of_people = mixed.then(|| Clause { subject: people, ..clause.clone() });
         let clause = of_people.as_ref().unwrap_or(clause);
@@ -139,7 +140,13 @@ impl Maker<'_> {
         let denied = clause.acts.iter().any(|act| act.not && !stays(act));
         for condition in &clause.conditions {
             let reason = self.reason(condition, &clause.subject);
-            for object in condition.clause.acts.iter().filter_map(|act| act.object.clone()).filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_))) {
+            for object in condition
+                .clause
+                .acts
+                .iter()
+                .filter_map(|act| act.object.clone())
+                .filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)))
+            {
                 self.say(condition.clause.tokens.clone(), Says::Introduce(vec![object]));
             }
             if reason.is_some() {
@@ -148,8 +155,21 @@ impl Maker<'_> {
             }
             // Whoever is waited for makes the sign.
             if let Some(Reason { who: Some(who), cue: Cue::Says, sign, .. }) = &reason {
-                let deed = Deed { who: who.clone(), act: Act::Sign, whom: None, not: false, when: Vec::new(), until: Vec::new(), for_s: None, says: *sign, obeys: false };
+                let deed = Deed {
+                    who: who.clone(),
+                    act: Act::Sign,
+                    whom: None,
+                    not: false,
+                    when: Vec::new(),
+                    until: Vec::new(),
+                    for_s: None,
+                    says: *sign,
+                    obeys: false,
+                };
                 self.say(condition.clause.tokens.clone(), Says::Do(deed));
+            }
+            if reason.is_some() {
+                self.rest(&condition.clause);
             }
             match (reason, condition.tie) {
                 (Some(reason), Tie::When | Tie::While | Tie::After) => when.push(reason),
@@ -165,13 +185,25 @@ impl Maker<'_> {
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         self.places(clause, robot);
         if let Some(does) = clause.does.filter(|_| clause.acts.is_empty() && !robot && !clause.subject.is_empty()) {
-            let deed = Deed { who: clause.subject.clone(), act: Act::Navigate, whom: None, not: !does, when: when.clone(), until: until.clone(), for_s: None, says: None, obeys: true };
+            let deed = Deed {
+                who: clause.subject.clone(),
+                act: Act::Navigate,
+                whom: None,
+                not: !does,
+                when: when.clone(),
+                until: until.clone(),
+                for_s: None,
+                says: None,
+                obeys: true,
+            };
             self.say(clause.tokens.clone(), Says::Do(deed));
         } else if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
             self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
         }
         // A reason for which nobody does anything yet is one for what comes.
-        if clause.acts.is_empty() && let Some(reason) = when.first() {
+        if clause.acts.is_empty()
+            && let Some(reason) = when.first()
+        {
             self.say(clause.tokens.clone(), Says::Then(reason.clone()));
         }
         let whole = Whole { clause, when: &when, until: &until, turned };
@@ -222,11 +254,7 @@ impl Maker<'_> {
             self.say(tokens, Says::NotPlayed(why.clone()));
             return;
         }
-        let by_robot = if act.passive {
-            clause.agent.as_ref().map_or(frame.asks, Noun::may_be_robot)
-        } else {
-            robot
-        };
+        let by_robot = if act.passive { clause.agent.as_ref().map_or(frame.asks, Noun::may_be_robot) } else { robot };
         if by_robot {
             let person = if act.passive {
                 Some(clause.subject.clone()).filter(|who| !who.is_empty() && !robot)
@@ -247,7 +275,9 @@ impl Maker<'_> {
             }
             return;
         }
-        let about_robot = object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::Who));
+        let about_robot = object.as_ref().is_none_or(|object| {
+            !matches!(object.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::Who)
+        });
         if !about_robot && act.sign.is_none() {
             let other = object.clone().map(|noun| vec![noun]);
             self.with_somebody(act, frame, whole, who, other);
@@ -267,10 +297,17 @@ impl Maker<'_> {
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
         }
-        let does = frame.denied.filter(|_| act.not).or(frame.act).or_else(|| act.sign.map(|_| Act::Sign)).or_else(|| frame.obeys.then_some(Act::Navigate));
+        let does = frame
+            .denied
+            .filter(|_| act.not)
+            .or(frame.act)
+            .or_else(|| act.sign.map(|_| Act::Sign))
+            .or_else(|| frame.obeys.then_some(Act::Navigate));
         if let Some(does) = does {
-            let somebody = |noun: &&Noun| matches!(noun.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::They);
-            let whom = act.object.as_ref().filter(|_| act.sign.is_some()).filter(somebody).map(|noun| vec![noun.clone()]);
+            let somebody =
+                |noun: &&Noun| matches!(noun.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::They);
+            let whom =
+                act.object.as_ref().filter(|_| act.sign.is_some()).filter(somebody).map(|noun| vec![noun.clone()]);
             let deed = Deed { whom, ..whole.deed(who, does, act, frame) };
             self.say(tokens, Says::Do(deed));
         } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
@@ -312,7 +349,9 @@ impl Maker<'_> {
         }
         let cue = frame.robot_cue.filter(|_| !act.not);
         match (frame.robot_relate, person) {
-            (Some(relation), Some(person)) if !act.not => self.say(tokens.clone(), Says::Relate(person, Some(relation), None)),
+            (Some(relation), Some(person)) if !act.not => {
+                self.say(tokens.clone(), Says::Relate(person, Some(relation), None))
+            }
             (_, Some(person)) => self.say(tokens.clone(), Says::Introduce(person)),
             (_, None) => {}
         }
@@ -349,7 +388,20 @@ impl Maker<'_> {
 
     fn places(&mut self, clause: &Clause, robot: bool) {
         let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
-        let goes = robot && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes)));
+        // `from the ward to the exit`
+        let route = clause.subject.is_empty()
+            && clause.acts.is_empty()
+            && clause.places.iter().any(|at| at.from)
+            && clause.places.iter().any(|at| at.to);
+        // Whoever follows the robot to a place tells where it drives.
+        let along = |act: &Predicate| {
+            frame(act).is_some_and(|frame| frame.act == Some(Act::Follow) || frame.relate == Some(Relation::Abreast))
+        };
+        let along = clause.acts.iter().any(along);
+        let goes = route
+            || along
+            || robot
+                && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes)));
         let robot = robot || clause.subject.is_empty();
         let part = clause.acts.iter().filter(|act| robot && !act.not).find_map(|act| frame(act)?.part);
         let rank = match () {
@@ -365,7 +417,7 @@ impl Maker<'_> {
                 Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),
                 Some(class) if part == Some(Part::Start) => Says::RobotStart(*class),
                 Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),
-                Some(class) => Says::Happens(*class, rank),
+                Some(class) => Says::Happens(*class, if *to { 1 } else { rank }),
             };
             self.say(*token..token + 1, says);
         }

@@ -175,8 +175,10 @@ impl Story {
 
     fn does(&mut self, deed: &Deed<People>) {
         let signs = deed.when.iter().chain(&deed.until);
-        let by_robot: Vec<Gesture> =
-            signs.filter(|reason| reason.cue == Cue::Says && reason.who.is_none()).filter_map(|reason| reason.sign).collect();
+        let by_robot: Vec<Gesture> = signs
+            .filter(|reason| reason.cue == Cue::Says && reason.who.is_none())
+            .filter_map(|reason| reason.sign)
+            .collect();
         for gesture in by_robot {
             self.robot_sign(gesture);
         }
@@ -194,7 +196,11 @@ impl Story {
         };
         self.each(&deed.who, |person| {
             // Somebody of whom nothing else is known stands there from the start.
-            if step.act == Act::StandStill && step.when.is_empty() && person.relation.is_none() && person.steps.is_empty() {
+            if step.act == Act::StandStill
+                && step.when.is_empty()
+                && person.relation.is_none()
+                && person.steps.is_empty()
+            {
                 person.relation = Some(Relation::Static);
             }
             if !person.steps.contains(&step) {
@@ -224,8 +230,10 @@ impl Story {
     fn human(&self, person: &Person) -> FormHuman {
         let blocks = person.steps.iter().any(|step| step.act == Act::Block);
         let open = if blocks { Relation::Static } else { Relation::Frontal };
-        let (standing, steps): (Vec<&Step>, Vec<&Step>) =
-            person.steps.iter().partition(|step| step.when.is_empty() && step.act == Act::Follow && step.for_s.is_none());
+        let (standing, steps): (Vec<&Step>, Vec<&Step>) = person
+            .steps
+            .iter()
+            .partition(|step| step.when.is_empty() && step.act == Act::Follow && step.for_s.is_none());
         FormHuman {
             id: None,
             count: 1,

@@ -45,6 +45,7 @@ pub(crate) enum Sort {
     At,
     From,
     Into,
+    For,
     Later,
     Title,
     /// Ends a verb, and is never skipped: `aside`, `out`.
