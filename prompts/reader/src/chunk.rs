@@ -8,7 +8,8 @@ use socrates_model::PlaceClass;
 use crate::lex::OWNS;
 use crate::lexicon::Lexicon;
 use crate::normalize::end_of;
-use crate::noun::{Head, Noun, noun};
+use crate::noun::{Head, Noun};
+use crate::phrase::noun;
 use crate::token::{Bent, Kind, Mark, Sort, Sorts, Token};
 
 /// A distance or a time.

@@ -400,7 +400,7 @@ impl Cast {
             Pick::The | Pick::Plain if noun.several && noun.ordinal.is_none() => {
                 Some(known).filter(|known| known.len() > 1 && noun.count.is_none_or(|_| known.len() == count))
             }
-            _ => self.picks(noun, &known),
+            Pick::The | Pick::Plain | Pick::All | Pick::None | Pick::Others | Pick::Former => self.picks(noun, &known),
         };
         match (found, noun.pick) {
             (Some(people), _) => people,

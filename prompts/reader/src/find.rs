@@ -56,8 +56,7 @@ pub(crate) fn longest(chunks: &[Chunk], at: usize, patterns: &Patterns) -> Optio
 
 fn matched(chunks: &[Chunk], at: usize, pattern: &Pattern, passive: bool) -> Option<Found> {
     let mut found = Found { row: pattern.row, end: at, passive, ..Found::default() };
-    let mut slots = pattern.slots.iter().enumerate().peekable();
-    while let Some((number, slot)) = slots.next() {
+    for (number, slot) in pattern.slots.iter().enumerate() {
         let object = matches!(slot.part, Part::Anybody | Part::Robot | Part::Person);
         if passive && number == 1 {
             // The object stands before the verb: `is overtaken by`.

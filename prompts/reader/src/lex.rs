@@ -57,7 +57,7 @@ fn unnumbered(tokens: Vec<Token>, words: &Words) -> Vec<Token> {
     // The number taken back, a mark, words of regret, perhaps a mark again, and the number that is meant.
     let regrets = |at: usize| tokens.get(at).is_some_and(|token| token.is(Sort::Regret));
     let taken_back = |at: usize| -> usize {
-        if !counts(at) || !tokens.get(at + 1).is_some_and(|token| !token.is_said()) || !regrets(at + 2) {
+        if !counts(at) || tokens.get(at + 1).is_none_or(Token::is_said) || !regrets(at + 2) {
             return 0;
         }
         let behind = (at + 2..at + 6).find(|next| !regrets(*next)).unwrap_or(at + 6);
@@ -168,11 +168,10 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
     let (mut lemma, bent) = words.base(&text);
     let mut sorts = words.sorts(&text);
     sorts = sorts.and(words.sorts(&lemma));
-    if kind == Kind::Word && lemma == text && sorts.is_empty() && text.len() >= CORRECTED_FROM {
-        if let Some(meant) = meant(&text, words) {
-            lemma = words.base(&meant).0;
-            sorts = words.sorts(&lemma);
-        }
+    let strange = kind == Kind::Word && lemma == text && sorts.is_empty() && text.len() >= CORRECTED_FROM;
+    if strange && let Some(meant) = meant(&text, words) {
+        lemma = words.base(&meant).0;
+        sorts = words.sorts(&lemma);
     }
     let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase);
     Token { at, text, lemma, kind, sorts, bent, capital }

@@ -26,11 +26,17 @@ mod lex;
 mod normalize;
 
 mod noun;
+mod phrase;
 
 mod chunk;
 mod find;
 
 mod clause;
+mod parser;
+mod predicate;
+mod sentence;
+mod subject;
+
 mod statement;
 
 mod discourse;

@@ -5,7 +5,8 @@ use std::fmt;
 use crate::Read;
 use crate::account::{Fate, account};
 use crate::chunk::{Chunk, chunks};
-use crate::clause::{Clause, clauses};
+use crate::clause::Clause;
+use crate::sentence::clauses;
 use crate::discourse::{Told, told};
 use crate::lexicon::Lexicon;
 use crate::normalize::{Scene, normalize};
@@ -58,8 +59,8 @@ impl fmt::Display for Passes<'_> {
         for clause in &self.clauses {
             write_clause(f, clause, self.lexicon, "clause     ")?;
         }
-        for statement in &self.told.statements {
-            writeln!(f, "statement  {}", said(&statement.says))?;
+        for statement in &self.statements {
+            writeln!(f, "statement  {}", Shown(&statement.says))?;
         }
         write!(f, "{}", self.story)?;
         for piece in account(&self.scene, &self.told.statements) {
@@ -104,8 +105,36 @@ fn write_clause(f: &mut fmt::Formatter<'_>, clause: &Clause, lexicon: &Lexicon, 
     Ok(())
 }
 
-fn said<W: fmt::Debug>(says: &Says<W>) -> String {
-    format!("{says:?}")
+/// A statement in a line, with people as the text names them.
+struct Shown<'a>(&'a Says<Named>);
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Says::Introduce(who) => write!(f, "introduce {}", spaced(who)),
+            Says::Relate(who, relation, side) => write!(f, "relate {}: {relation:?} {side:?}", spaced(who)),
+            Says::Group(who) => write!(f, "group {}", spaced(who)),
+            Says::Pace(who, mps) => write!(f, "pace {}: {mps} m/s", spaced(who)),
+            Says::Do(deed) => {
+                let not = if deed.not { "not " } else { "" };
+                write!(f, "do {}: {not}{}", spaced(&deed.who), deed.act.name())?;
+                for (word, reasons) in [("when", &deed.when), ("until", &deed.until)] {
+                    for reason in reasons {
+                        write!(f, " {word} {:?}", reason.cue)?;
+                    }
+                }
+                deed.for_s.map_or(Ok(()), |secs| write!(f, " for {secs} s"))
+            }
+            Says::RobotSays(sign, _) => write!(f, "robot says {sign:?}"),
+            Says::Then(reason) => write!(f, "then {:?}", reason.cue),
+            Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),
+            Says::RobotStart(class) => write!(f, "robot starts {class}"),
+            Says::RobotGoal(class) => write!(f, "robot goes {class}"),
+            Says::Background(reason) => write!(f, "background {}", reason.name()),
+            Says::NotPlayed(why) => write!(f, "not played: {why}"),
+            Says::NotRead => f.write_str("not read"),
+        }
+    }
 }
 
 fn spaced<T: fmt::Display>(all: &[T]) -> String {

@@ -84,7 +84,9 @@ impl Patterns {
             let words: Vec<String> = match &first.part {
                 Part::Word(words) => words.iter().cloned().collect(),
                 Part::Amount => vec![AMOUNT.to_owned()],
-                _ => return Err(bad("first")),
+                Part::Anybody | Part::Robot | Part::Person | Part::Somebody | Part::Whose | Part::Place => {
+                    return Err(bad("first"));
+                }
             };
             for word in words {
                 self.by_first.entry(word).or_default().push(number);

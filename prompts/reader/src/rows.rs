@@ -78,7 +78,7 @@ pub enum Cue {
 /// A part of the robot's way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub(crate) enum Part {
     /// Where it begins.
     Start,
     /// Where it ends.
@@ -88,114 +88,114 @@ pub enum Part {
 /// A row of `frames.toml`: a verb with what belongs to it, or another phrase that says how somebody moves.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Frame {
+pub(crate) struct Frame {
     /// Its name, for dumps and counts.
-    pub id: String,
+    pub(crate) id: String,
     /// Patterns, see [`crate::pattern`].
-    pub phrases: Vec<String>,
+    pub(crate) phrases: Vec<String>,
     /// How a person of whom it is said stands to the robot's way.
-    pub relate: Option<Relation>,
+    pub(crate) relate: Option<Relation>,
     /// On which side.
-    pub side: Option<Side>,
+    pub(crate) side: Option<Side>,
     /// What the person does.
-    pub act: Option<Act>,
+    pub(crate) act: Option<Act>,
     /// What the person does of whom it is denied: `does not move`.
-    pub denied: Option<Act>,
+    pub(crate) denied: Option<Act>,
     /// Whether those of whom it is said are a group.
-    pub group: bool,
+    pub(crate) group: bool,
     /// What it is as a reason, said of a person.
-    pub cue: Option<Cue>,
+    pub(crate) cue: Option<Cue>,
     /// What it is as a reason, said of the robot.
-    pub robot_cue: Option<Cue>,
+    pub(crate) robot_cue: Option<Cue>,
     /// How the person to whom the robot does it stands to its way.
-    pub robot_relate: Option<Relation>,
+    pub(crate) robot_relate: Option<Relation>,
     /// A sign that the person, or the robot, makes by it.
-    pub says: Option<Gesture>,
+    pub(crate) says: Option<Gesture>,
     /// Whether what is asked for follows: `asks the robot to …`.
-    pub asks: bool,
+    pub(crate) asks: bool,
     /// The sign by which somebody is asked to do it.
-    pub asked: Option<Gesture>,
+    pub(crate) asked: Option<Gesture>,
     /// Whether it does what was asked for, or what is told before.
-    pub obeys: bool,
+    pub(crate) obeys: bool,
     /// Whether it denies what is said next: `refuses to`.
-    pub denies: bool,
+    pub(crate) denies: bool,
     /// Whether nothing is to be seen of it, and why.
-    pub background: Option<Background>,
+    pub(crate) background: Option<Background>,
     /// Why it is not played.
-    pub unplayed: Option<String>,
+    pub(crate) unplayed: Option<String>,
     /// Whether it says how somebody moves, and no more than another phrase beside it: `walks`.
-    pub plain: bool,
+    pub(crate) plain: bool,
     /// Whether the robot drives by it: to where it ends, from where it begins.
-    pub goes: bool,
+    pub(crate) goes: bool,
     /// What a place in it is for the robot: `leaves the ward`, `reaches the exit`.
-    pub part: Option<Part>,
+    pub(crate) part: Option<Part>,
     /// Texts, each read so.
-    pub reads: Vec<String>,
+    pub(crate) reads: Vec<String>,
     /// What every one of them gives: a line of the form.
-    pub gives: String,
+    pub(crate) gives: String,
     /// Texts of which none gives it.
-    pub not: Vec<String>,
+    pub(crate) not: Vec<String>,
 }
 
 /// A row of `places.toml`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PlaceRow {
+pub(crate) struct PlaceRow {
     /// The class; none: a place that no map can hold.
-    pub class: Option<PlaceClass>,
+    pub(crate) class: Option<PlaceClass>,
     /// Patterns of words.
-    pub phrases: Vec<String>,
+    pub(crate) phrases: Vec<String>,
     /// Texts, each read so.
     #[serde(default)]
-    pub reads: Vec<String>,
+    pub(crate) reads: Vec<String>,
     /// What every one of them gives.
     #[serde(default)]
-    pub gives: String,
+    pub(crate) gives: String,
     /// Texts of which none gives it.
     #[serde(default)]
-    pub not: Vec<String>,
+    pub(crate) not: Vec<String>,
 }
 
 /// A row of `signs.toml`: what is said for a gesture.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SignRow {
+pub(crate) struct SignRow {
     /// The gesture.
-    pub says: Gesture,
+    pub(crate) says: Gesture,
     /// Patterns.
-    pub phrases: Vec<String>,
+    pub(crate) phrases: Vec<String>,
     /// Texts, each read so.
-    pub reads: Vec<String>,
+    pub(crate) reads: Vec<String>,
     /// What every one of them gives.
-    pub gives: String,
+    pub(crate) gives: String,
     /// Texts of which none gives it.
     #[serde(default)]
-    pub not: Vec<String>,
+    pub(crate) not: Vec<String>,
 }
 
 /// A row of `rewrites.toml`: words in place of others.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Rewrite {
+pub(crate) struct Rewrite {
     /// Its name.
-    pub id: String,
+    pub(crate) id: String,
     /// Patterns of words.
-    pub phrases: Vec<String>,
+    pub(crate) phrases: Vec<String>,
     /// The words in their place.
-    pub becomes: String,
+    pub(crate) becomes: String,
     /// Texts, each read as `gives`.
-    pub reads: Vec<String>,
+    pub(crate) reads: Vec<String>,
     /// A text read the same way.
-    pub gives: String,
+    pub(crate) gives: String,
     /// Texts read otherwise than `gives`.
     #[serde(default)]
-    pub not: Vec<String>,
+    pub(crate) not: Vec<String>,
 }
 
 /// How much of a text a phrase makes background.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Extent {
+pub(crate) enum Extent {
     /// Its own words.
     Words,
     /// From it to the next comma or other mark.
@@ -207,23 +207,23 @@ pub enum Extent {
 /// A row of `scopes.toml`: words that ask for nothing.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scope {
+pub(crate) struct Scope {
     /// Its name.
-    pub id: String,
+    pub(crate) id: String,
     /// Why they ask for nothing.
-    pub reason: Background,
+    pub(crate) reason: Background,
     /// How much of the text it is about.
-    pub extent: Extent,
+    pub(crate) extent: Extent,
     /// Whether it holds where a sentence begins, and nowhere else.
     #[serde(default)]
-    pub first: bool,
+    pub(crate) first: bool,
     /// Patterns of words.
-    pub phrases: Vec<String>,
+    pub(crate) phrases: Vec<String>,
     /// Texts, each read as `gives`.
-    pub reads: Vec<String>,
+    pub(crate) reads: Vec<String>,
     /// A text without the words that ask for nothing.
-    pub gives: String,
+    pub(crate) gives: String,
     /// Texts read otherwise than `gives`.
     #[serde(default)]
-    pub not: Vec<String>,
+    pub(crate) not: Vec<String>,
 }

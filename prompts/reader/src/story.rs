@@ -135,7 +135,15 @@ fn unsure(told: &Told) -> Vec<usize> {
                 of(deed.whom.as_deref().unwrap_or_default());
             }
             Says::Introduce(who) | Says::RobotSays(_, Some(who)) if !statement.partly => of(who),
-            _ => {}
+            Says::Introduce(_)
+            | Says::RobotSays(..)
+            | Says::Then(_)
+            | Says::Happens(..)
+            | Says::RobotStart(_)
+            | Says::RobotGoal(_)
+            | Says::Background(_)
+            | Says::NotPlayed(_)
+            | Says::NotRead => {}
         }
     }
     let unsure: Vec<usize> = (0..sure.len()).filter(|person| sure.get(*person) == Some(&false)).collect();

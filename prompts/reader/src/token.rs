@@ -31,6 +31,7 @@ pub(crate) enum Sort {
     Not,
     And,
     But,
+    Or,
     Then,
     When,
     While,

@@ -1,0 +1,188 @@
+//! Predicates: acts by the rows of `frames.toml`, what is said, amounts and places.
+
+use crate::chunk::{Amount, Chunk, Is};
+use crate::clause::{At, Clause, Predicate};
+use crate::find::{Found, longest};
+use crate::noun::{BRISK_MPS, SLOW_MPS};
+use crate::parser::{Parser, says_nothing};
+use crate::token::{Mark, Sort};
+use socrates_model::{Gesture, PlaceClass};
+
+impl Parser<'_> {
+    /// Takes the row that matches here, where one does.
+    pub(crate) fn framed(&mut self, clause: &mut Clause) -> bool {
+        let found = longest(self.chunks, self.at, &self.lexicon.frame_patterns);
+        let matches = found.is_some();
+        if let Some(found) = found {
+            self.predicate(found, clause);
+        }
+        matches
+    }
+
+    pub(crate) fn amount(&mut self, amount: Amount, clause: &mut Clause) {
+        let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
+        let after = before.is_some_and(|before| before.word(Sort::After))
+            || self.ahead(1).is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After));
+        match amount {
+            Amount::Distance(m) => clause.within_m = Some(m),
+            Amount::Time(secs) if after => clause.after_s = Some(secs),
+            Amount::Time(secs) => clause.lasts_s = Some(secs),
+        }
+        self.at += 1;
+        if after && self.peek().is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After)) {
+            self.at += 1;
+        }
+    }
+
+    pub(crate) fn place(&mut self, class: Option<PlaceClass>, clause: &mut Clause) {
+        clause.places.push(self.place_at(class, self.at));
+        self.at += 1;
+    }
+
+    /// A place with the word before it: `to the exit`, `from a room`.
+    pub(crate) fn place_at(&self, class: Option<PlaceClass>, at: usize) -> At {
+        let articles = |chunk: &&Chunk| {
+            chunk.is_mark(Mark::Colon)
+                || chunk.word(Sort::Definite)
+                || chunk.word(Sort::Indefinite)
+                || matches!(chunk.is, Is::Whose(_))
+        };
+        let before = self.chunks.get(..at).unwrap_or_default().iter().rev().find(|chunk| !articles(chunk));
+        let to =
+            before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into) || before.word(Sort::For));
+        let from = before.is_some_and(|before| before.word(Sort::From));
+        At { class, to, from, token: self.chunks.get(at).map_or(0, |chunk| chunk.tokens.start) }
+    }
+
+    pub(crate) fn word(&mut self, clause: &mut Clause) {
+        let quoted = self.at > 0
+            && self
+                .chunks
+                .get(self.at - 1)
+                .is_some_and(|before| before.is_mark(Mark::Quote) || before.is_mark(Mark::Colon));
+        if quoted && !clause.subject.is_empty() && self.said(clause) {
+            return;
+        }
+        if self.framed(clause) {
+            return;
+        }
+        let Some(chunk) = self.chunks.get(self.at) else { return };
+        let obeys =
+            clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
+        if chunk.word(Sort::Do) {
+            clause.does = Some(!clause.not);
+        }
+        if chunk.word(Sort::Not) && obeys {
+            // `he does not`
+            if let Some(last) = clause.acts.last_mut() {
+                last.not = !last.not;
+            }
+        } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
+            clause.not = true;
+            clause.does = clause.does.map(|_| false);
+        } else if chunk.word(Sort::Slow) {
+            clause.pace_mps = Some(SLOW_MPS);
+        } else if chunk.word(Sort::Brisk) {
+            clause.pace_mps = Some(BRISK_MPS);
+        } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) {
+            clause.looks.extend(chunk.tokens.clone());
+        } else if !says_nothing(chunk) {
+            clause.left.extend(chunk.tokens.clone());
+        }
+        self.at += 1;
+    }
+
+    /// `Robot: "excuse me"`: what is said, without a word for saying it.
+    pub(crate) fn said(&mut self, clause: &mut Clause) -> bool {
+        let start = self.token();
+        let Some(row) = self.lexicon.frames.iter().position(|frame| frame.asks) else { return false };
+        let Some(found) = longest(self.chunks, self.at, &self.lexicon.sign_patterns) else { return false };
+        let sign = self.lexicon.signs.get(found.row).map(|row| row.says);
+        self.at = found.end;
+        let tokens = start..self.token();
+        clause.acts.push(Predicate { row, object: None, owner: None, not: false, passive: false, sign, tokens });
+        true
+    }
+
+    fn predicate(&mut self, found: Found, clause: &mut Clause) {
+        let start = self.token();
+        for between in &found.between {
+            let Some(chunk) = self.chunks.get(*between) else { continue };
+            if chunk.word(Sort::Slow) {
+                clause.pace_mps = Some(SLOW_MPS);
+            } else if chunk.word(Sort::Brisk) {
+                clause.pace_mps = Some(BRISK_MPS);
+            }
+        }
+        let verb = self.peek().map(|chunk| (chunk.word(Sort::Slow), chunk.word(Sort::Brisk)));
+        match verb {
+            Some((true, _)) => clause.pace_mps = Some(SLOW_MPS),
+            Some((_, true)) => clause.pace_mps = Some(BRISK_MPS),
+            _ => {}
+        }
+        let passive = found.passive && self.at > 0;
+        self.at = found.end;
+        match found.amount {
+            Some(Amount::Distance(m)) => clause.within_m = Some(m),
+            Some(Amount::Time(secs)) => clause.lasts_s = Some(secs),
+            None => {}
+        }
+        clause.places.extend(found.place.map(|(class, at)| self.place_at(class, at)));
+        let frame = self.lexicon.frames.get(found.row);
+        let mut sign = frame.and_then(|frame| frame.says);
+        if frame.is_some_and(|frame| frame.asks) {
+            sign = self.speech().or(sign);
+        }
+        if frame.is_some_and(|frame| frame.denies) {
+            clause.not = !clause.not;
+            return;
+        }
+        let tokens = start..self.token();
+        let act =
+            Predicate { row: found.row, object: found.object, owner: found.owner, not: clause.not, passive, sign, tokens };
+        clause.acts.push(act);
+    }
+
+    /// What is said or asked for: `to make room`, `"excuse me"`.
+    pub(crate) fn speech(&mut self) -> Option<Gesture> {
+        let mut at = self.at;
+        let mut quoted = false;
+        while let Some(chunk) = self.chunks.get(at) {
+            let sign = longest(self.chunks, at, &self.lexicon.sign_patterns);
+            let asked = longest(self.chunks, at, &self.lexicon.frame_patterns)
+                .and_then(|found| Some((found.end, self.lexicon.frames.get(found.row)?.asked?)));
+            let said = sign.and_then(|found| Some((found.end, self.lexicon.signs.get(found.row)?.says)));
+            let best = match (said, asked) {
+                (Some(said), Some(asked)) => Some(if said.0 >= asked.0 { said } else { asked }),
+                (said, asked) => said.or(asked),
+            };
+            if let Some((end, gesture)) = best {
+                self.at = end;
+                while self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Quote)) {
+                    self.at += 1;
+                }
+                return Some(gesture);
+            }
+            match &chunk.is {
+                Is::Mark(Mark::Quote) => quoted = true,
+                Is::Mark(Mark::Comma | Mark::Colon)
+                    if !quoted && self.chunks.get(at + 1).is_some_and(|next| next.is_mark(Mark::Quote)) => {}
+                Is::Mark(Mark::Comma) if quoted => {}
+                Is::Mark(_) => return None,
+                Is::Noun(_) => {}
+                Is::Word
+                    if chunk.word(Sort::And)
+                        || chunk.word(Sort::But)
+                        || chunk.word(Sort::When)
+                        || chunk.word(Sort::Until) =>
+                {
+                    return None;
+                }
+                Is::Word if says_nothing(chunk) || chunk.word(Sort::Not) => {}
+                Is::Word | Is::Whose(_) | Is::Place(_) | Is::Amount(_) => return None,
+            }
+            at += 1;
+        }
+        None
+    }
+}

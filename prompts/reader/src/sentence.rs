@@ -1,0 +1,348 @@
+//! Pass 4: chunks to clauses, by recursive descent. Passive, inversion, relative clauses and ellipsis are undone here and nowhere else.
+//!
+//! ```text
+//! text      = sentence*
+//! sentence  = ( join | condition | clause )*
+//! condition = tie clause                                  when, until, before, after, while, unless
+//! clause    = subject? ( act | amount | place | condition | filler )*
+//! subject   = noun ( ("," | "and") noun )*
+//! ```
+//! A clause ends at a mark, at a join, and where another subject begins.
+
+use crate::chunk::{Chunk, Is};
+use crate::clause::{Clause, Condition, Join, Predicate, Tie};
+use crate::lexicon::Lexicon;
+use crate::noun::{Head, Noun};
+use crate::parser::{Parser, names_somebody};
+use crate::token::{Bent, Mark, Sort};
+
+/// The clauses of a text.
+pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
+    let mut parser = Parser::new(chunks, lexicon);
+    while parser.at < chunks.len() {
+        parser.sentence();
+    }
+    parser.found
+}
+
+impl Parser<'_> {
+    pub(crate) fn sentence(&mut self) {
+        let mut pending: Vec<Condition> = Vec::new();
+        // What was said when before the clauses for which it holds.
+        let mut ahead: Vec<Condition> = Vec::new();
+        let first = self.found.len();
+        let mut join = Join::Start;
+        let mut apart = true;
+        while let Some(chunk) = self.peek() {
+            if chunk.is_mark(Mark::Stop) {
+                self.at += 1;
+                break;
+            }
+            if let Some(next) = self.joins(join) {
+                (join, apart) = (next, true);
+                self.at += 1;
+                continue;
+            }
+            if let Some(tie) = self.tie() {
+                let condition = self.condition(tie);
+                let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
+                let before = self.found.len() > first && (!apart || !more);
+                match self.found.last_mut().filter(|_| before) {
+                    Some(clause) => clause.conditions.push(condition),
+                    None => {
+                        if pending.is_empty() {
+                            ahead.clear();
+                        }
+                        if matches!(condition.tie, Tie::When | Tie::After) {
+                            ahead.push(condition.clone());
+                        }
+                        pending.push(condition);
+                    }
+                }
+                continue;
+            }
+            let start = self.at;
+            let before = self.subject.clone();
+            let mut clause = self.clause(join, false);
+            // What may not begin a clause is left over.
+            if self.at == start {
+                clause.left.extend(self.peek().into_iter().flat_map(|chunk| chunk.tokens.clone()));
+                self.at += 1;
+            }
+            clause.tokens.end = self.token().max(clause.tokens.end);
+            let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
+            if clause.acts.iter().all(plain)
+                && clause.subject == before
+                && self.found.len() > first
+                && self.adds(&clause)
+            {
+                continue;
+            }
+            if clause.conditions.is_empty() || !pending.is_empty() {
+                clause.conditions.append(&mut pending);
+            }
+            if clause.conditions.is_empty() && clause.after_s.is_none() && clause.join != Join::Then {
+                clause.conditions.clone_from(&ahead);
+            }
+            self.share(&mut clause, first);
+            self.front(&clause, first);
+            self.found.push(clause);
+            (join, apart) = (Join::And, false);
+        }
+        if let Some(condition) = pending.pop() {
+            let mut clause = Clause::new(join, condition.clause.tokens.start);
+            clause.tokens = condition.clause.tokens.clone();
+            clause.subject = condition.clause.subject.clone();
+            clause.conditions.push(condition);
+            clause.conditions.append(&mut pending);
+            self.found.push(clause);
+        }
+    }
+
+    /// `Coming towards the robot: a nurse`: what is said before its subject.
+    pub(crate) fn front(&mut self, clause: &Clause, first: usize) {
+        if clause.subject.is_empty() || clause.subject.iter().all(Noun::may_be_robot) {
+            return;
+        }
+        for before in
+            self.found.iter_mut().skip(first).filter(|before| before.subject.is_empty() && !before.acts.is_empty())
+        {
+            before.subject.clone_from(&clause.subject);
+        }
+    }
+
+    /// `…, for five seconds`: an amount that belongs to the clause before.
+    pub(crate) fn adds(&mut self, clause: &Clause) -> bool {
+        let amounts = clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
+        let Some(last) = self.found.last_mut().filter(|last| amounts && !last.acts.is_empty()) else { return false };
+        // A place, or where somebody goes, makes a clause of its own.
+        if clause.acts.iter().any(|act| act.object.is_some() || act.sign.is_some()) {
+            return false;
+        }
+        last.lasts_s = last.lasts_s.or(clause.lasts_s);
+        last.within_m = last.within_m.or(clause.within_m);
+        last.after_s = last.after_s.or(clause.after_s);
+        last.places.extend(&clause.places);
+        last.left.extend(&clause.left);
+        last.looks.extend(&clause.looks);
+        last.conditions.extend(clause.conditions.iter().cloned());
+        true
+    }
+
+    /// What is said when for the first of several acts holds for those joined to it: `when it is near, he stops and looks`.
+    pub(crate) fn share(&self, clause: &mut Clause, first: usize) {
+        let Some(before) = self.found.get(first..).and_then(<[Clause]>::last) else { return };
+        let joined = clause.join == Join::And && clause.conditions.is_empty() && clause.after_s.is_none();
+        if joined && before.subject == clause.subject && !before.acts.is_empty() {
+            clause.conditions.clone_from(&before.conditions);
+            clause.conditions.retain(|condition| condition.tie != Tie::Until && condition.tie != Tie::While);
+        }
+    }
+
+    /// A word or mark that joins clauses, and how.
+    pub(crate) fn joins(&self, join: Join) -> Option<Join> {
+        let chunk = self.peek()?;
+        Some(match &chunk.is {
+            Is::Mark(Mark::Colon | Mark::Open) => Join::Colon,
+            Is::Mark(Mark::Arrow) => Join::Then,
+            Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) if join == Join::Start => Join::Start,
+            Is::Mark(Mark::Comma | Mark::Dash | Mark::Close) => {
+                if matches!(join, Join::Colon) {
+                    join
+                } else {
+                    Join::And
+                }
+            }
+            Is::Mark(Mark::Quote) => join,
+            Is::Word if chunk.word(Sort::But) => Join::But,
+            // `while the other walks on` is a clause of its own.
+            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
+                Join::But
+            }
+            Is::Word if chunk.word(Sort::Then) && !chunk.word(Sort::Not) => Join::Then,
+            Is::Word if chunk.word(Sort::And) || chunk.word(Sort::Or) => match join {
+                Join::Then | Join::Colon => join,
+                Join::Start | Join::And | Join::But => Join::And,
+            },
+            Is::Word | Is::Noun(_) | Is::Whose(_) | Is::Place(_) | Is::Amount(_) | Is::Mark(Mark::Stop) => return None,
+        })
+    }
+
+    /// Whether the chunk begins a condition.
+    pub(crate) fn tie(&self) -> Option<Tie> {
+        let chunk = self.peek().filter(|chunk| chunk.is == Is::Word)?;
+        let next = self.ahead(1);
+        let follows = |next: &Chunk| {
+            matches!(next.is, Is::Noun(_) | Is::Whose(_))
+                || next.bent == Bent::Ing && next.is == Is::Word
+                || next.word(Sort::Verb) && next.bent == Bent::Ed
+        };
+        let person = next.is_some_and(follows);
+        let tie = match () {
+            () if chunk.word(Sort::Until) => Tie::Until,
+            () if chunk.word(Sort::Unless) => Tie::Unless,
+            () if chunk.word(Sort::When) => Tie::When,
+            () if chunk.word(Sort::Before) && person => Tie::Before,
+            () if chunk.word(Sort::After) && person => Tie::After,
+            () if chunk.word(Sort::While) && person => Tie::While,
+            () => return None,
+        };
+        (tie == Tie::Until || next.is_some_and(|next| !matches!(next.is, Is::Amount(_)))).then_some(tie)
+    }
+
+    pub(crate) fn condition(&mut self, tie: Tie) -> Condition {
+        let start = self.token();
+        self.at += 1;
+        let (subject, denied) = (self.subject.clone(), self.denied);
+        self.denied = false;
+        let mut clause = self.clause(Join::And, true);
+        clause.tokens.start = start;
+        // The subject of a condition is that of its clause as well: `when she sees it, stops`; but never the robot.
+        self.subject = if subject.is_empty() && !clause.subject.iter().any(Noun::may_be_robot) {
+            clause.subject.clone()
+        } else {
+            subject
+        };
+        self.denied = denied;
+        Condition { tie, clause }
+    }
+
+    pub(crate) fn clause(&mut self, join: Join, inner: bool) -> Clause {
+        let mut clause = Clause::new(join, self.token());
+        clause.not = self.denied && join == Join::And && self.before().is_some_and(|before| before.word(Sort::Or));
+        clause.own = self.relative(&mut clause);
+        while let Some(chunk) = self.peek() {
+            let aside = inner && chunk.is_mark(Mark::Comma) && clause.is_bare() && !clause.subject.is_empty();
+            if aside && self.ahead(1).is_some_and(|next| next.word(Sort::Who)) {
+                self.aside();
+                continue;
+            }
+            if self.ends(&clause, inner) {
+                break;
+            }
+            match &chunk.is {
+                Is::Noun(noun) => {
+                    let noun = noun.clone();
+                    self.noun(noun, inner, &mut clause);
+                }
+                Is::Whose(_) | Is::Mark(_) => self.at += 1,
+                Is::Amount(amount) => {
+                    let amount = *amount;
+                    if !self.framed(&mut clause) {
+                        self.amount(amount, &mut clause);
+                    }
+                }
+                Is::Place(class) => {
+                    let class = *class;
+                    if !self.framed(&mut clause) {
+                        self.place(class, &mut clause);
+                    }
+                }
+                Is::Word => match self.tie().filter(|_| !inner) {
+                    Some(tie) => {
+                        let condition = self.condition(tie);
+                        clause.conditions.push(condition);
+                        let comma = self.peek().is_some_and(|next| next.is_mark(Mark::Comma));
+                        self.at += usize::from(comma && clause.acts.is_empty() && clause.own);
+                    }
+                    None => self.word(&mut clause),
+                },
+            }
+        }
+        self.denied = clause.not || clause.acts.iter().any(|act| act.not);
+        self.keep_subject(&mut clause, inner);
+        clause.tokens.end = self.token();
+        clause
+    }
+
+    /// Whose clause it is: its own subject, or by ellipsis that of the clause before.
+    fn keep_subject(&mut self, clause: &mut Clause, inner: bool) {
+        if clause.own {
+            self.subject.clone_from(&clause.subject);
+        } else {
+            // `robot 3 m away: stops`: not the robot, of which the reason tells.
+            let robot = !self.subject.is_empty() && self.subject.iter().all(|noun| noun.head == Head::Robot);
+            let answers = robot && matches!(clause.join, Join::Colon | Join::Then) && !self.person.is_empty();
+            clause.subject.clone_from(if answers { &self.person } else { &self.subject });
+        }
+        if clause.subject.iter().any(|noun| !noun.may_be_robot()) && !inner {
+            self.person.clone_from(&clause.subject);
+        }
+    }
+
+    /// A relative clause between commas, within a condition: a clause of its own.
+    pub(crate) fn aside(&mut self) {
+        self.at += 1;
+        let own = self.subject.clone();
+        let clause = self.clause(Join::And, true);
+        self.subject = own;
+        self.found.push(clause);
+        if self.peek().is_some_and(|next| next.is_mark(Mark::Comma)) {
+            self.at += 1;
+        }
+    }
+
+    /// `who …`: of whoever was named last.
+    pub(crate) fn relative(&mut self, clause: &mut Clause) -> bool {
+        let who = self.peek().filter(|chunk| chunk.word(Sort::Who)).map(|chunk| chunk.tokens.clone());
+        let Some(tokens) = who.filter(|_| self.at > 0) else { return false };
+        clause.subject.push(Noun::new(Head::Who, tokens));
+        self.at += 1;
+        true
+    }
+
+    /// Whether the clause ends before the chunk.
+    pub(crate) fn ends(&self, clause: &Clause, inner: bool) -> bool {
+        let Some(chunk) = self.peek() else { return true };
+        match &chunk.is {
+            Is::Mark(Mark::Quote) => false,
+            Is::Mark(Mark::Comma) => {
+                !(clause.is_bare()
+                    && !clause.subject.is_empty()
+                    && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) && next.bent == Bent::Ing))
+            }
+            Is::Mark(_) => true,
+            Is::Noun(noun) => {
+                let by = self.at > 0
+                    && self.chunks.get(self.at - 1).is_some_and(|before| {
+                        before.word(Sort::By)
+                            || before.word(Sort::At)
+                            || before.word(Sort::To)
+                            || before.word(Sort::Of)
+                            || before.lemma == "than"
+                            || before.lemma == "with"
+                    });
+                let complete = !clause.acts.is_empty() || inner && !clause.is_bare();
+                complete && !by && noun.tokens.start > 0
+            }
+            Is::Word
+                if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::Or) =>
+            {
+                true
+            }
+            Is::Word if chunk.word(Sort::Then) => true,
+            Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
+                !clause.is_bare() || !clause.subject.is_empty()
+            }
+            Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => {
+                !clause.subject.is_empty() || !clause.acts.is_empty()
+            }
+            // `that` after a noun begins a relative clause.
+            Is::Word if chunk.word(Sort::Who) => {
+                let after_noun =
+                    self.at > 0 && self.chunks.get(self.at - 1).is_some_and(|before| before.noun().is_some());
+                after_noun
+                    && self
+                        .ahead(1)
+                        .is_some_and(|next| next.word(Sort::Verb) || next.word(Sort::Be) || next.word(Sort::Modal))
+            }
+            Is::Word if inner => {
+                // `until it has passed does he go on`
+                let helps = [Sort::Do, Sort::Modal, Sort::Have, Sort::Be].iter().any(|sort| chunk.word(*sort));
+                let turned = helps && self.ahead(1).and_then(Chunk::noun).is_some_and(Noun::may_be_person);
+                (self.tie().is_some() || turned) && !clause.is_bare()
+            }
+            Is::Word | Is::Whose(_) | Is::Amount(_) | Is::Place(_) => false,
+        }
+    }
+}
