@@ -1,7 +1,8 @@
 //! The two readers of requests side by side: all corpora, by kind of construct.
 //!
 //! `cargo run -p socrates-offline --example snapshot > old.tsv`, then
-//! `cargo run -p socrates-reader --example compare -- old.tsv [--list KIND] [--set NAME] [--show TEXT]`
+//! `cargo run -p socrates-reader --example compare -- old.tsv [--sets] [--list KIND] [--set NAME]`; `--show TEXT`, `--examples` and
+//! `--ablate` (what each row earns) need no snapshot. The rows are read from `data/`, so that they can be tried without a build.
 //!
 //! A quarter of the open corpora is held out: the requests whose text has an FNV-1a hash (64 bits) that four divides. `--list` never
 //! shows those, nor the sets kept aside: of these only counts are printed.
@@ -139,6 +140,48 @@ fn tail(act: &str, rest: &[&str]) -> String {
     }
 }
 
+/// What each row earns: the facts that are right with it and not without it, and in how many requests, of what is worked on.
+fn ablate(files: Files<'_>, whole: &Reader) {
+    let cases: Vec<Case> = corpora().into_iter().filter(|(aside, _)| !aside).flat_map(|(_, cases)| cases).collect();
+    let right = |reader: &Reader| -> Vec<i64> {
+        let of = |case: &Case| {
+            let view = new_view(&reader.read(&case.text));
+            i64::try_from(case.facts.iter().filter(|fact| view.holds(fact)).count()).unwrap_or_default()
+        };
+        cases.iter().map(of).collect()
+    };
+    let with = right(whole);
+    let mut lines: Vec<(i64, usize, &str)> = Vec::new();
+    for id in whole.rows() {
+        let Ok(reader) = Reader::without(files, id) else { continue };
+        let without = right(&reader);
+        let facts: i64 = with.iter().zip(&without).map(|(with, without)| with - without).sum();
+        let requests = with.iter().zip(&without).filter(|(with, without)| with > without).count();
+        lines.push((facts, requests, id));
+    }
+    lines.sort_unstable();
+    for (facts, requests, id) in lines {
+        println!("{id:<20} {facts:>5} facts in {requests:>4} requests");
+    }
+}
+
+/// All requests, those aside apart.
+fn corpora() -> Vec<(bool, Vec<Case>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../offline/corpus");
+    let mut paths: Vec<_> =
+        std::fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    let mut all = Vec::new();
+    for path in paths.iter().filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
+        let Ok(corpus) = toml::from_str::<Corpus>(&std::fs::read_to_string(path).unwrap_or_default()) else { continue };
+        let sealed = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("sealed"));
+        let (aside, open): (Vec<Case>, Vec<Case>) =
+            corpus.request.into_iter().partition(|case| sealed || held_out(&case.text));
+        all.extend([(true, aside), (false, open)]);
+    }
+    all
+}
+
 fn example_line(reader: &Reader, example: Example<'_>) {
     let story = reader.read(example.text).story.to_string();
     let by_text = matches!(example.file, "rewrites" | "scopes");
@@ -164,7 +207,7 @@ fn hash(text: &str) -> u64 {
 }
 
 fn held_out(text: &str) -> bool {
-    hash(text) % 4 == 0
+    hash(text).is_multiple_of(4)
 }
 
 /// What the old reader understood, by the hash of the text.
@@ -226,6 +269,14 @@ impl Tally {
     }
 }
 
+/// What is seen of all requests together.
+#[derive(Default)]
+struct Seen {
+    kinds: BTreeMap<String, Tally>,
+    times: Vec<f64>,
+    unread: BTreeMap<String, usize>,
+}
+
 struct Options {
     list: Option<String>,
     set: Option<String>,
@@ -251,6 +302,10 @@ fn main() {
         println!("{}", reader.passes(&text));
         return;
     }
+    if words.iter().any(|word| word == "--ablate") {
+        ablate(files, &reader);
+        return;
+    }
     if words.iter().any(|word| word == "--examples") {
         for example in reader.examples() {
             example_line(&reader, example);
@@ -269,37 +324,25 @@ fn main() {
     names.sort();
     let old = snapshot(words.first().map_or("", String::as_str));
     let mut tallies: BTreeMap<(bool, String), Tally> = BTreeMap::new();
-    let mut kinds: BTreeMap<String, Tally> = BTreeMap::new();
-    let mut times: Vec<f64> = Vec::new();
-    let mut unread: BTreeMap<String, usize> = BTreeMap::new();
+    let mut seen = Seen::default();
     for name in names.iter().filter(|name| options.set.as_ref().is_none_or(|set| **name == format!("{set}.toml"))) {
         let Ok(text) = std::fs::read_to_string(folder.join(name)) else { continue };
         let Ok(corpus) = toml::from_str::<Corpus>(&text) else { continue };
         for case in &corpus.request {
             let aside = name.starts_with("sealed") || held_out(&case.text);
-            let tally =
-                judge(&reader, case, old.get(&hash(&case.text)), aside, &options, &mut kinds, &mut times, &mut unread);
+            let tally = judge(&reader, case, old.get(&hash(&case.text)), aside, &options, &mut seen);
             tallies.entry((aside, name.trim_end_matches(".toml").to_owned())).or_default().add(&tally);
         }
     }
-    report(words.iter().any(|word| word == "--sets"), &tallies, &kinds, &mut times, &unread);
+    report(words.iter().any(|word| word == "--sets"), &tallies, seen);
 }
 
-fn judge(
-    reader: &Reader,
-    case: &Case,
-    old: Option<&View>,
-    aside: bool,
-    options: &Options,
-    kinds: &mut BTreeMap<String, Tally>,
-    times: &mut Vec<f64>,
-    unread: &mut BTreeMap<String, usize>,
-) -> Tally {
+fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options: &Options, seen: &mut Seen) -> Tally {
     let nothing = View::default();
     let old = old.unwrap_or(&nothing);
     let start = Instant::now();
     let read = reader.read(&case.text);
-    times.push(start.elapsed().as_secs_f64() * 1e6);
+    seen.times.push(start.elapsed().as_secs_f64() * 1e6);
     let new = new_view(&read);
     let mut tally = Tally { requests: 1, whole: usize::from(!new.honest), ..Tally::default() };
     let mut shown = options.list.is_none();
@@ -319,7 +362,7 @@ fn judge(
             tally.add(&own);
         }
         if !aside {
-            kinds.entry(kind.clone()).or_default().add(&own);
+            seen.kinds.entry(kind.clone()).or_default().add(&own);
         }
         let wanted =
             options.list.as_ref().is_some_and(|list| kind == *list || list == "silent" && silent || list == "any");
@@ -339,7 +382,7 @@ fn judge(
     }
     if !aside {
         for piece in read.pieces.iter().filter(|piece| piece.fate == Fate::NotRead) {
-            *unread.entry(case.text.get(piece.at.clone()).unwrap_or_default().to_lowercase()).or_default() += 1;
+            *seen.unread.entry(case.text.get(piece.at.clone()).unwrap_or_default().to_lowercase()).or_default() += 1;
         }
     }
     tally.old_said = old.facts.len();
@@ -348,13 +391,8 @@ fn judge(
     tally
 }
 
-fn report(
-    sets: bool,
-    tallies: &BTreeMap<(bool, String), Tally>,
-    kinds: &BTreeMap<String, Tally>,
-    times: &mut [f64],
-    unread: &BTreeMap<String, usize>,
-) {
+fn report(sets: bool, tallies: &BTreeMap<(bool, String), Tally>, seen: Seen) {
+    let Seen { kinds, mut times, unread } = seen;
     for aside in [false, true] {
         let mut all = Tally::default();
         println!("\n{}", if aside { "held out, and sets kept aside" } else { "worked on" });

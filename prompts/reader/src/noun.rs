@@ -3,7 +3,6 @@
 use std::fmt;
 use std::ops::Range;
 
-
 /// What a noun phrase is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Head {

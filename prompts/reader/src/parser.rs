@@ -2,8 +2,8 @@
 
 use crate::chunk::{Chunk, Is};
 use crate::clause::Clause;
-use crate::lexicon::Lexicon;
 use crate::lex::OWNS;
+use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun};
 use crate::token::Sort;
 

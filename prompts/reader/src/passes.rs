@@ -6,10 +6,10 @@ use crate::Read;
 use crate::account::{Fate, account};
 use crate::chunk::{Chunk, chunks};
 use crate::clause::Clause;
-use crate::sentence::clauses;
 use crate::discourse::{Told, told};
 use crate::lexicon::Lexicon;
 use crate::normalize::{Scene, normalize};
+use crate::sentence::clauses;
 use crate::statement::{Named, Says, Statement, statements};
 use crate::story::{Story, story};
 use crate::token::Token;
@@ -38,6 +38,25 @@ impl<'a> Passes<'a> {
         let told = told(&statements);
         let story = story(&told);
         Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, story }
+    }
+
+    /// Acts of clauses of which no statement says anything: a fault of the reader, and always empty.
+    #[must_use]
+    pub fn lost(&self) -> Vec<&str> {
+        let said = |tokens: &std::ops::Range<usize>| {
+            self.told
+                .statements
+                .iter()
+                .any(|statement| statement.tokens.start < tokens.end && tokens.start < statement.tokens.end)
+        };
+        let acts = self.clauses.iter().flat_map(|clause| &clause.acts).filter(|act| !said(&act.tokens));
+        let plain = |act: &&crate::clause::Predicate| {
+            self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain || frame.part.is_some())
+        };
+        acts.filter(|act| !plain(act))
+            .filter_map(|act| self.scene.tokens.get(act.tokens.start))
+            .map(|token| token.text.as_str())
+            .collect()
     }
 
     /// What came of it.

@@ -138,8 +138,15 @@ impl Parser<'_> {
             return;
         }
         let tokens = start..self.token();
-        let act =
-            Predicate { row: found.row, object: found.object, owner: found.owner, not: clause.not, passive, sign, tokens };
+        let act = Predicate {
+            row: found.row,
+            object: found.object,
+            owner: found.owner,
+            not: clause.not,
+            passive,
+            sign,
+            tokens,
+        };
         clause.acts.push(act);
     }
 

@@ -11,6 +11,7 @@
 
 use crate::chunk::{Chunk, Is};
 use crate::clause::{Clause, Condition, Join, Predicate, Tie};
+use crate::find::longest;
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun};
 use crate::parser::{Parser, names_somebody};
@@ -234,7 +235,10 @@ impl Parser<'_> {
                 }
                 Is::Place(class) => {
                     let class = *class;
-                    if !self.framed(&mut clause) {
+                    // `exit` alone is a place, and nothing that somebody does.
+                    let more = longest(self.chunks, self.at, &self.lexicon.frame_patterns)
+                        .is_some_and(|found| found.end > self.at + 1);
+                    if !more || !self.framed(&mut clause) {
                         self.place(class, &mut clause);
                     }
                 }
@@ -315,11 +319,7 @@ impl Parser<'_> {
                 let complete = !clause.acts.is_empty() || inner && !clause.is_bare();
                 complete && !by && noun.tokens.start > 0
             }
-            Is::Word
-                if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::Or) =>
-            {
-                true
-            }
+            Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::Or) => true,
             Is::Word if chunk.word(Sort::Then) => true,
             Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
                 !clause.is_bare() || !clause.subject.is_empty()

@@ -140,15 +140,7 @@ impl Maker<'_> {
         let denied = clause.acts.iter().any(|act| act.not && !stays(act));
         for condition in &clause.conditions {
             let reason = self.reason(condition, &clause.subject);
-            for object in condition
-                .clause
-                .acts
-                .iter()
-                .filter_map(|act| act.object.clone())
-                .filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)))
-            {
-                self.say(condition.clause.tokens.clone(), Says::Introduce(vec![object]));
-            }
+            self.introduce(&condition.clause);
             if reason.is_some() {
                 let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
                 self.places(&condition.clause, robot);
@@ -220,6 +212,16 @@ impl Maker<'_> {
         self.rest(clause);
     }
 
+    /// Whoever is named in a condition is there.
+    fn introduce(&mut self, clause: &Clause) {
+        let objects = clause.acts.iter().filter_map(|act| act.object.as_ref());
+        let named = objects.chain(&clause.subject).filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)));
+        let named: Vec<Noun> = named.cloned().collect();
+        if !named.is_empty() {
+            self.say(clause.tokens.clone(), Says::Introduce(named));
+        }
+    }
+
     /// A condition that is no reason: `while the other walks on` is a clause of its own.
     fn beside(&mut self, condition: &Condition) {
         let own = !condition.clause.subject.is_empty() && !condition.clause.acts.is_empty();
@@ -243,6 +245,11 @@ impl Maker<'_> {
     fn act(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, robot: bool) {
         let clause = whole.clause;
         let tokens = act.tokens.clone();
+        // What the robot carries is no wish.
+        if robot && (frame.background.is_some() || frame.unplayed.is_some()) {
+            self.say(tokens, Says::Background(Background::Errand));
+            return;
+        }
         if let Some(reason) = frame.background {
             if !clause.subject.is_empty() && !robot {
                 self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
@@ -250,8 +257,10 @@ impl Maker<'_> {
             self.say(tokens, Says::Background(reason));
             return;
         }
-        if let Some(why) = frame.unplayed.as_ref().filter(|_| !act.not && !robot) {
-            self.say(tokens, Says::NotPlayed(why.clone()));
+        if let Some(why) = &frame.unplayed {
+            // Nobody has to leave undone what nobody can do.
+            let says = if act.not { Says::Background(Background::Looks) } else { Says::NotPlayed(why.clone()) };
+            self.say(tokens, says);
             return;
         }
         let by_robot = if act.passive { clause.agent.as_ref().map_or(frame.asks, Noun::may_be_robot) } else { robot };
@@ -316,7 +325,8 @@ impl Maker<'_> {
             self.say(tokens, Says::Then(reason));
         } else if frame.asks {
             self.say(tokens, Says::NotRead);
-        } else if frame.relate.is_none() && !frame.group {
+        } else if relation.is_none() && !frame.group {
+            // What is denied, or says no more than that somebody is there.
             self.say(tokens, Says::Introduce(who));
         }
     }
@@ -342,12 +352,28 @@ impl Maker<'_> {
     fn robot(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, person: Option<Named>) {
         let tokens = act.tokens.clone();
         if frame.asks || act.sign.is_some() {
-            if !act.not {
-                self.say(tokens, Says::RobotSays(act.sign, person));
-            }
+            let says = if act.not { Says::NotRead } else { Says::RobotSays(act.sign, person) };
+            self.say(tokens, says);
             return;
         }
         let cue = frame.robot_cue.filter(|_| !act.not);
+        // `the robot meets a nurse head-on`
+        let others = || whole.clause.acts.iter().filter_map(|act| act.object.clone()).filter(Noun::may_be_person);
+        if let (Some(relation), None, false) = (frame.relate, &person, act.not)
+            && !frame.goes
+            && let Some(other) = others().find(|noun| noun.head != Head::It)
+        {
+            self.say(tokens, Says::Relate(vec![other], Some(relation), frame.side));
+            return;
+        }
+        let silent = cue.is_none()
+            && person.is_none()
+            && !frame.goes
+            && (frame.part.is_none() || whole.clause.places.is_empty());
+        if silent && !frame.plain {
+            self.say(tokens, Says::NotRead);
+            return;
+        }
         match (frame.robot_relate, person) {
             (Some(relation), Some(person)) if !act.not => {
                 self.say(tokens.clone(), Says::Relate(person, Some(relation), None))

@@ -11,7 +11,11 @@ impl Parser<'_> {
     /// A noun phrase: the subject, more of it, an agent, or somebody named beside.
     pub(crate) fn noun(&mut self, noun: Noun, inner: bool, clause: &mut Clause) {
         let before = |sort| self.before().is_some_and(|before| before.word(sort));
-        let (is, by, with) = (before(Sort::Be) || self.before().is_some_and(|before| before.text == OWNS), before(Sort::By), before(Sort::With));
+        let (is, by, with) = (
+            before(Sort::Be) || self.before().is_some_and(|before| before.text == OWNS),
+            before(Sort::By),
+            before(Sort::With),
+        );
         self.at += 1;
         if clause.subject.is_empty() && (clause.is_bare() || !inner) && clause.acts.is_empty() {
             clause.not |= noun.pick == Pick::None;

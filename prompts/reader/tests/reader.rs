@@ -1,0 +1,136 @@
+//! The reader as a whole: its rows by their examples, and what holds of every text.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use socrates_reader::{Example, Fate, Files, Reader, SHIPPED};
+
+#[derive(Deserialize)]
+struct Corpus {
+    request: Vec<Case>,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    text: String,
+}
+
+/// Every text of the corpora.
+fn texts() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../offline/corpus");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    paths.sort();
+    let corpus = |path: &PathBuf| toml::from_str::<Corpus>(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let texts: Vec<String> = paths.iter().map(corpus).flat_map(|corpus| corpus.request).map(|case| case.text).collect();
+    assert!(texts.len() > 3000, "{}", texts.len());
+    texts
+}
+
+fn holds(reader: &Reader, example: &Example<'_>) -> bool {
+    let story = reader.read(example.text).story.to_string();
+    if matches!(example.file, "rewrites" | "scopes") {
+        return story == reader.read(example.gives).story.to_string();
+    }
+    story.lines().any(|line| line.starts_with(example.gives))
+}
+
+#[test]
+fn every_row_reads_its_examples_and_no_other() {
+    let reader = Reader::of(SHIPPED).unwrap();
+    let examples = reader.examples();
+    assert!(examples.len() > 150, "{}", examples.len());
+    let wrong: Vec<_> = examples.iter().filter(|example| holds(&reader, example) != example.does).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_row_that_cannot_be_is_refused_with_its_file() {
+    let bad = Files { signs: "[[row]]\nsays = \"HELLO\"", ..SHIPPED };
+    assert_eq!(Reader::of(bad).unwrap_err().to_string(), "`signs.toml` cannot be read");
+    let frames = "[[row]]\nid = \"odd\"\nphrases = [\"@ walks\"]\nreads = []\ngives = \"\"\nnot = []";
+    let bad = Files { frames, ..SHIPPED };
+    let fault = Reader::of(bad).unwrap_err();
+    assert_eq!(fault.to_string(), "a pattern cannot be read");
+}
+
+#[test]
+fn no_act_of_any_clause_vanishes() {
+    let reader = Reader::shipped();
+    let mut lost = Vec::new();
+    for text in texts() {
+        let passes = reader.passes(&text);
+        lost.extend(passes.lost().into_iter().map(|word| format!("`{word}` of “{text}”")));
+    }
+    assert!(lost.is_empty(), "{} acts, among them {:#?}", lost.len(), lost.iter().take(5).collect::<Vec<_>>());
+}
+
+#[test]
+fn pieces_stand_in_the_text_and_in_its_order() {
+    let reader = Reader::shipped();
+    for text in texts() {
+        let read = reader.read(&text);
+        assert!(
+            read.pieces.iter().all(|piece| text.get(piece.at.clone()).is_some_and(|words| !words.is_empty())),
+            "{text}"
+        );
+        assert!(read.pieces.is_sorted_by_key(|piece| piece.at.start), "{text}");
+    }
+}
+
+#[test]
+fn what_no_row_knows_is_said_to_be_not_read() {
+    let read = socrates_reader::read("A nurse yodels in the corridor and steps aside when she sees the robot.");
+    let words: Vec<_> =
+        read.pieces.iter().filter(|piece| piece.fate == Fate::NotRead).map(|piece| piece.at.clone()).collect();
+    assert_eq!(words, [8..14]);
+    assert_eq!(read.story.to_string(), "place: corridor\nhuman_1: nurse\nhuman_1: give_way when visible\n");
+}
+
+#[test]
+fn odd_texts_are_read_as_nothing() {
+    for text in [
+        "",
+        " ",
+        "...",
+        "?!",
+        "\u{1f916}\u{1f916}",
+        "1 2 3",
+        "'s",
+        "n't",
+        "(((",
+        "- - -",
+        "the the the",
+        "\"",
+        "and and and",
+    ] {
+        let read = socrates_reader::read(text);
+        assert!(read.story.people.len() <= 3, "{text}: {}", read.story);
+    }
+}
+
+#[test]
+fn a_story_makes_a_form() {
+    let read = socrates_reader::read(
+        "Two nurses come towards the robot in the corridor. They step aside when it is 3 m away.",
+    );
+    let form = toml::to_string(&read.story.form()).unwrap();
+    assert!(
+        form.contains("count = 2") && form.contains("relation = \"frontal\"") && form.contains("place = \"corridor\""),
+        "{form}"
+    );
+    assert!(form.contains("act = \"give_way\"") && form.contains("robot_near = 3.0"), "{form}");
+}
+
+/// The passes of a sentence, as `--show` prints them; the file beside this one is what a reader of the crate looks at first.
+#[test]
+fn the_passes_print_themselves() {
+    let text =
+        "I want to see how it copes. The moment an elderly nurse sees the robot, she stops for 3 s and looks at it.";
+    let shown = Reader::shipped().passes(text).to_string();
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/passes.txt");
+    if std::env::var_os("UPDATE_PASSES").is_some() {
+        std::fs::write(&file, &shown).unwrap();
+    }
+    assert_eq!(shown, std::fs::read_to_string(file).unwrap(), "UPDATE_PASSES=1 writes it anew");
+}
