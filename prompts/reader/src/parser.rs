@@ -52,6 +52,7 @@ pub(crate) fn names_somebody(noun: &Noun) -> bool {
 pub(crate) fn says_nothing(chunk: &Chunk) -> bool {
     let silent = [
         Sort::Fill,
+        Sort::Empty,
         Sort::Be,
         Sort::Do,
         Sort::Have,

@@ -339,6 +339,20 @@ impl Reader<'_> {
                 }
                 return true;
             }
+            let acts = |next: &Token| {
+                next.is(Sort::Verb) && next.bent == Bent::S
+                    || next.is(Sort::Be)
+                    || next.is(Sort::Who)
+                    || next.is(Sort::Modal)
+            };
+            let sounds = token.sorts.is_empty()
+                && token.bent == Bent::Base
+                && self.lexicon.words.sounds_like_a_person(&token.text);
+            if told && sounds && matches!(noun.pick, Pick::Some | Pick::The) && next.is_some_and(acts) {
+                noun.head = Head::Role(token.lemma.clone());
+                self.at += 1;
+                return true;
+            }
             if token.is(Sort::Group) && (told || next.is_some_and(|next| next.is(Sort::Of))) {
                 return self.group(noun);
             }

@@ -60,7 +60,7 @@ impl Parser<'_> {
                 .chunks
                 .get(self.at - 1)
                 .is_some_and(|before| before.is_mark(Mark::Quote) || before.is_mark(Mark::Colon));
-        if quoted && !clause.subject.is_empty() && self.said(clause) {
+        if quoted && !(clause.subject.is_empty() && self.subject.is_empty()) && self.said(clause) {
             return;
         }
         if self.framed(clause) {

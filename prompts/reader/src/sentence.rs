@@ -32,6 +32,8 @@ impl Parser<'_> {
         // What was said when before the clauses for which it holds.
         let mut ahead: Vec<Condition> = Vec::new();
         let first = self.found.len();
+        // `Ten seconds later …`: of the acts that follow.
+        let mut later: Option<f64> = None;
         let mut join = Join::Start;
         let mut apart = true;
         while let Some(chunk) = self.peek() {
@@ -71,6 +73,12 @@ impl Parser<'_> {
                 self.at += 1;
             }
             clause.tokens.end = self.token().max(clause.tokens.end);
+            let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
+            if clause.acts.is_empty() && clause.after_s.is_some() && more {
+                later = clause.after_s.take();
+            } else if !clause.acts.is_empty() && clause.conditions.is_empty() && clause.after_s.is_none() {
+                clause.after_s = later.take();
+            }
             let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
             if clause.acts.iter().all(plain)
                 && clause.subject == before

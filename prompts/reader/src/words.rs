@@ -12,6 +12,7 @@ use crate::token::{Bent, Sort, Sorts};
 struct File {
     fill: String,
     empty: String,
+    person_endings: String,
     looks: String,
     things: String,
     robot: String,
@@ -40,6 +41,7 @@ pub(crate) struct Words {
     pub(crate) seconds: BTreeMap<String, f64>,
     pub(crate) classes: BTreeMap<String, BTreeSet<String>>,
     forms: BTreeMap<String, String>,
+    person_endings: Vec<String>,
 }
 
 /// Endings, and what stands in their place in the base form.
@@ -66,6 +68,7 @@ impl Words {
             meters: file.meters,
             seconds: file.seconds,
             forms: file.forms,
+            person_endings: split(&file.person_endings).collect(),
             classes: file.classes.into_iter().map(|(name, all)| (name, split(&all).collect())).collect(),
             ..Self::default()
         };
@@ -143,6 +146,11 @@ impl Words {
             return (word.to_owned(), Bent::Base);
         }
         (word.to_owned(), ending_of_unknown(word))
+    }
+
+    /// Whether a word that nobody knows ends as words for people do: `storekeeper`.
+    pub(crate) fn sounds_like_a_person(&self, word: &str) -> bool {
+        word.len() > 5 && self.person_endings.iter().any(|ending| word.ends_with(ending.as_str()))
     }
 
     /// Known words of at least this length, for spelling.
