@@ -63,6 +63,8 @@ struct Cast {
     meant: BTreeMap<usize, People>,
     /// Those of whom a colon tells, who have no role yet.
     unnamed: People,
+    /// The same, of the statement that is being told.
+    fresh: People,
     tells: bool,
     /// What people react to from now on.
     pending: Vec<Reason<People>>,
@@ -76,6 +78,9 @@ struct Cast {
 
 impl Cast {
     fn begin(&mut self, statement: &Statement<Named>) {
+        if !self.fresh.is_empty() {
+            self.unnamed = std::mem::take(&mut self.fresh);
+        }
         if statement.first {
             self.unnamed.clear();
             // A sign is answered in the next sentence as well.
@@ -466,7 +471,7 @@ impl Cast {
         self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
         let people: People = (first..first + count).collect();
         if count > 1 {
-            self.unnamed.clone_from(&people);
+            self.fresh.clone_from(&people);
         }
         if count == 1 && !self.set.is_empty() && noun.pick == Pick::Another {
             self.set.extend(people.iter().copied());

@@ -176,6 +176,8 @@ impl Parser<'_> {
                     if !quoted && self.chunks.get(at + 1).is_some_and(|next| next.is_mark(Mark::Quote)) => {}
                 Is::Mark(Mark::Comma) if quoted => {}
                 Is::Mark(_) => return None,
+                // `when she hears this she stops`
+                Is::Noun(noun) if noun.nominative && !quoted => return None,
                 Is::Noun(_) => {}
                 Is::Word
                     if chunk.word(Sort::And)

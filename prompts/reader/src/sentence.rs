@@ -122,7 +122,9 @@ impl Parser<'_> {
 
     /// `…, for five seconds`: an amount that belongs to the clause before.
     pub(crate) fn adds(&mut self, clause: &Clause) -> bool {
-        let amounts = clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
+        // `…, but only after it has stopped`
+        let when = clause.acts.is_empty() && !clause.own && !clause.conditions.is_empty();
+        let amounts = when || clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
         let Some(last) = self.found.last_mut().filter(|last| amounts && !last.acts.is_empty()) else { return false };
         // A place, or where somebody goes, makes a clause of its own.
         if clause.acts.iter().any(|act| act.object.is_some() || act.sign.is_some()) {
@@ -134,7 +136,9 @@ impl Parser<'_> {
         last.places.extend(&clause.places);
         last.left.extend(&clause.left);
         last.looks.extend(&clause.looks);
-        last.conditions.extend(clause.conditions.iter().cloned());
+        if last.conditions.is_empty() || when {
+            last.conditions.clone_from(&clause.conditions);
+        }
         true
     }
 

@@ -252,7 +252,10 @@ impl Maker<'_> {
         }
         if let Some(reason) = frame.background {
             if !clause.subject.is_empty() && !robot {
+                // What somebody has with them does not make them a part of the scene.
+                let partly = std::mem::replace(&mut self.partly, true);
                 self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
+                self.partly = partly;
             }
             self.say(tokens, Says::Background(reason));
             return;
