@@ -10,6 +10,7 @@ use super::modules::{EVERYTHING, Module, Named, program};
 /// Rooms whose modules stand in an order. In the rooms that are missing here some modules still name each other around a ring.
 const ROOMS: &[&str] = &[
     "bus/stream",
+    "prompts/reader",
     "workers/authoring",
     "workers/gateway",
     "workers/scoring/stats",

@@ -25,7 +25,8 @@ struct Case {
 
 fn main() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
-    let mut names: Vec<_> = std::fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut names: Vec<_> =
+        std::fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
     names.sort();
     let mut locations: BTreeMap<String, Location> = BTreeMap::new();
     for path in names.iter().filter(|path| path.extension().is_some_and(|ext| ext == "toml")) {
@@ -85,7 +86,11 @@ fn facts(reading: &Reading) -> BTreeSet<String> {
             facts.insert(act.clone());
             facts.extend(rule.for_s.map(|secs| format!("{act} for {}", number(secs))));
             for trigger in &rule.when {
-                facts.extend(old_cue(trigger, human.relation == Some(socrates_model::Relation::Ahead)).into_iter().map(|cue| format!("{act} {cue}")));
+                facts.extend(
+                    old_cue(trigger, human.relation == Some(socrates_model::Relation::Ahead))
+                        .into_iter()
+                        .map(|cue| format!("{act} {cue}")),
+                );
             }
             if let Some(secs) = before.filter(|before| before.when == rule.when).and_then(|before| before.for_s) {
                 facts.insert(format!("{act} when after"));
@@ -100,7 +105,10 @@ fn facts(reading: &Reading) -> BTreeSet<String> {
 fn old_act(act: &socrates_model::Action) -> String {
     match act {
         socrates_model::Action::FollowHuman(id) => format!("follow_human {}", id.number()),
-        other => serde_json::to_value(other).ok().and_then(|value| value.as_str().map(str::to_owned)).unwrap_or_else(|| "other".to_owned()),
+        other => serde_json::to_value(other)
+            .ok()
+            .and_then(|value| value.as_str().map(str::to_owned))
+            .unwrap_or_else(|| "other".to_owned()),
     }
 }
 
@@ -123,4 +131,3 @@ fn old_cue(trigger: &socrates_model::Trigger, ahead: bool) -> Vec<String> {
         T::Always | T::StoppedFor(_) | T::Did(..) | T::Done(_) => Vec::new(),
     }
 }
-

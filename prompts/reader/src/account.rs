@@ -7,6 +7,7 @@ use socrates_model::statement::Background;
 use crate::discourse::People;
 use crate::normalize::Scene;
 use crate::statement::{Says, Statement};
+use crate::story::Story;
 
 /// What became of a piece of a text.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +29,15 @@ pub struct Piece {
     pub at: Range<usize>,
     /// What became of it.
     pub fate: Fate,
+}
+
+/// What a text was read as.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Read {
+    /// People, and what they do.
+    pub story: Story,
+    /// What became of every piece of the text.
+    pub pieces: Vec<Piece>,
 }
 
 /// What became of every piece, in the order of the text.

@@ -44,7 +44,7 @@ pub(crate) struct Chunk {
     /// Base form, of a word.
     pub(crate) lemma: String,
     /// As written, of a word.
-    pub(crate) text: String,
+    pub(crate) spelled: String,
     pub(crate) sorts: Sorts,
     pub(crate) bent: Bent,
 }
@@ -90,7 +90,7 @@ pub(crate) fn chunks(tokens: &[Token], lexicon: &Lexicon) -> Vec<Chunk> {
             is,
             tokens: at..end,
             lemma: token.lemma.clone(),
-            text: token.text.clone(),
+            spelled: token.spelled.clone(),
             sorts: token.sorts,
             bent: token.bent,
         });
@@ -120,12 +120,12 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
     if token.is(Sort::Possessive) {
         let head = if token.is(Sort::He) {
             Head::He
-        } else if token.text == "their" {
+        } else if token.spelled == "their" {
             Head::They
         } else {
             Head::It
         };
-        let head = if token.text == "his" { Head::He } else { head };
+        let head = if token.spelled == "his" { Head::He } else { head };
         return (Is::Whose(Noun::new(head, at..at + 1)), at + 1);
     }
     // `rack 12`, `shift 2`: the number is a name.
@@ -137,7 +137,7 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
 
 /// Whether `'s` makes a possessor of what stands before it, and is no short `is`.
 fn owns(tokens: &[Token], at: usize) -> bool {
-    let ends = tokens.get(at).is_some_and(|token| token.text == OWNS);
+    let ends = tokens.get(at).is_some_and(|token| token.spelled == OWNS);
     let next = tokens.get(at + 1);
     let is = |next: &Token| {
         next.bent == Bent::Ing && next.is(Sort::Verb)
@@ -174,7 +174,7 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
     }
     let unit = tokens.get(end)?;
     if let Some(m) = words.meters.get(&unit.lemma) {
-        // `a metre and a half`
+        // `a meter and a half`
         let more = half(end + 1, "and") && half(end + 3, "half");
         let number = if more { number + 0.5 } else { number };
         return Some((Amount::Distance(number * m), end + 1 + 3 * usize::from(more)));
@@ -198,7 +198,7 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
     let longest = |start: usize| {
         let first = tokens.get(start).filter(|token| token.is_said())?;
         let patterns = &lexicon.place_patterns;
-        let of_text = patterns.beginning(&first.text).filter(|_| first.text != first.lemma);
+        let of_text = patterns.beginning(&first.spelled).filter(|_| first.spelled != first.lemma);
         patterns
             .beginning(&first.lemma)
             .chain(of_text)
@@ -208,7 +208,7 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
     let (mut end, row) = (at..=start).filter_map(longest).max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))?;
     // `room 214`, `ward B`.
     let named = |token: &Token| {
-        token.number().is_some() || token.text.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word
+        token.number().is_some() || token.spelled.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word
     };
     let unit = |token: Option<&Token>| {
         token.is_some_and(|token| {

@@ -36,7 +36,7 @@ pub(crate) fn longest(chunks: &[Chunk], at: usize, patterns: &Patterns) -> Optio
     let (lemma, text) = match first.is {
         Is::Mark(_) | Is::Noun(_) | Is::Whose(_) => return None,
         Is::Amount(_) => (AMOUNT, AMOUNT),
-        Is::Word | Is::Place(_) => (first.lemma.as_str(), first.text.as_str()),
+        Is::Word | Is::Place(_) => (first.lemma.as_str(), first.spelled.as_str()),
     };
     let be = |back: usize| {
         at.checked_sub(back).and_then(|before| chunks.get(before)).is_some_and(|before| before.word(Sort::Be))
@@ -98,7 +98,7 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
     let Some(chunk) = chunks.get(found.end) else { return false };
     let fits = match (part, &chunk.is) {
         (Part::Word(words), Is::Word | Is::Place(_)) => {
-            (words.contains(&chunk.lemma) || words.contains(&chunk.text)) && chunk.tokens.len() == 1
+            (words.contains(&chunk.lemma) || words.contains(&chunk.spelled)) && chunk.tokens.len() == 1
         }
         (Part::Anybody | Part::Robot | Part::Person, Is::Noun(noun)) if noun.nominative => false,
         (Part::Anybody, Is::Noun(noun)) => {
@@ -155,7 +155,7 @@ fn may_stand_between(chunk: &Chunk) -> bool {
         Is::Whose(_) => true,
         Is::Word => {
             let says = [Sort::Fill, Sort::Definite, Sort::Indefinite, Sort::Slow, Sort::Brisk, Sort::Looks];
-            (says.iter().any(|sort| chunk.sorts.has(*sort)) || chunk.text.ends_with("ly"))
+            (says.iter().any(|sort| chunk.sorts.has(*sort)) || chunk.spelled.ends_with("ly"))
                 && !joins.iter().any(|sort| chunk.sorts.has(*sort))
         }
         Is::Noun(_) | Is::Place(_) | Is::Amount(_) | Is::Mark(_) => false,

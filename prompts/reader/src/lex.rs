@@ -131,7 +131,7 @@ fn marks(start: usize, piece: &str, text: &str, words: &Words, tokens: &mut Vec<
         Some('<' | '+' | '&' | '@' | '#') => {
             tokens.push(Token {
                 at: start..start + piece.len(),
-                text: piece.to_owned(),
+                spelled: piece.to_owned(),
                 lemma: words.base(piece).0,
                 kind: Kind::Word,
                 sorts: words.sorts(&words.base(piece).0),
@@ -153,7 +153,7 @@ fn marks(start: usize, piece: &str, text: &str, words: &Words, tokens: &mut Vec<
     let kind = Kind::Mark(mark);
     tokens.push(Token {
         at: start..start + piece.len(),
-        text: piece.to_owned(),
+        spelled: piece.to_owned(),
         lemma: piece.to_owned(),
         kind,
         sorts: crate::token::Sorts::default(),
@@ -174,7 +174,7 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
         sorts = words.sorts(&lemma);
     }
     let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase);
-    Token { at, text, lemma, kind, sorts, bent, capital }
+    Token { at, spelled: text, lemma, kind, sorts, bent, capital }
 }
 
 /// The known word of which another is a slip of the pen: two letters swapped, or one letter doubled or lost.

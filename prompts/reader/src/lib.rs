@@ -1,4 +1,4 @@
-//! The reader of requests: text to statements to a form. No map, no catalogue of cards, no geometry, no weights.
+//! The reader of requests: text to statements to a form. No map, no catalog of cards, no geometry, no weights.
 //!
 //! ```text
 //! text ─► tokens ─► scene ─────► chunks ─► clauses ─► statements ──► people ────► story ─► form
@@ -41,14 +41,15 @@ mod statement;
 
 mod discourse;
 
-mod account;
 mod story;
+
+mod account;
 
 mod passes;
 
 mod examples;
 
-pub use account::{Fate, Piece};
+pub use account::{Fate, Piece, Read};
 pub use discourse::People;
 pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};
@@ -56,15 +57,6 @@ pub use passes::Passes;
 pub use rows::{Act, Cue};
 pub use statement::{Deed, Reason, Says, Statement};
 pub use story::{Person, Step, Story};
-
-/// What a text was read as.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Read {
-    /// People, and what they do.
-    pub story: Story,
-    /// What became of every piece of the text.
-    pub pieces: Vec<Piece>,
-}
 
 /// A reader with its rows.
 #[derive(Debug, Default)]

@@ -33,7 +33,7 @@ fn longest(tokens: &[Token], at: usize, patterns: &Patterns) -> Option<(usize, u
     let first = tokens.get(at).filter(|token| token.is_said())?;
     patterns
         .beginning(&first.lemma)
-        .chain(patterns.beginning(&first.text).filter(|_| first.text != first.lemma))
+        .chain(patterns.beginning(&first.spelled).filter(|_| first.spelled != first.lemma))
         .filter_map(|pattern| Some((end_of(tokens, at, pattern)?, pattern.row)))
         .max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))
 }
@@ -44,9 +44,11 @@ pub(crate) fn end_of(tokens: &[Token], at: usize, pattern: &Pattern) -> Option<u
     for (number, slot) in pattern.slots.iter().enumerate() {
         let fits = |token: Option<&Token>| {
             token.is_some_and(|token| match &slot.part {
-                Part::Word(words) => token.is_said() && (words.contains(&token.lemma) || words.contains(&token.text)),
+                Part::Word(words) => {
+                    token.is_said() && (words.contains(&token.lemma) || words.contains(&token.spelled))
+                }
                 // Among words alone an amount is a number, or the letter of a list.
-                Part::Amount => token.number().is_some() || token.text.len() == 1 && token.is_said(),
+                Part::Amount => token.number().is_some() || token.spelled.len() == 1 && token.is_said(),
                 Part::Anybody | Part::Robot | Part::Person | Part::Somebody | Part::Whose | Part::Place => false,
             })
         };

@@ -72,5 +72,5 @@ pub(crate) fn says_nothing(chunk: &Chunk) -> bool {
         Sort::After,
         Sort::Before,
     ];
-    chunk.is == Is::Word && (chunk.text == OWNS || silent.iter().any(|sort| chunk.sorts.has(*sort)))
+    chunk.is == Is::Word && (chunk.spelled == OWNS || silent.iter().any(|sort| chunk.sorts.has(*sort)))
 }

@@ -2,8 +2,7 @@
 
 use std::fmt;
 
-use crate::Read;
-use crate::account::{Fate, account};
+use crate::account::{Fate, Read, account};
 use crate::chunk::{Chunk, chunks};
 use crate::clause::Clause;
 use crate::discourse::{Told, told};
@@ -55,7 +54,7 @@ impl<'a> Passes<'a> {
         };
         acts.filter(|act| !plain(act))
             .filter_map(|act| self.scene.tokens.get(act.tokens.start))
-            .map(|token| token.text.as_str())
+            .map(|token| token.spelled.as_str())
             .collect()
     }
 

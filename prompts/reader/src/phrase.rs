@@ -128,16 +128,20 @@ impl Reader<'_> {
         let of_label =
             at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Label));
         let letter = !of_label
-            && (token.capital && matches!(token.text.as_bytes(), [b'b'..=b'h'])
-                || token.capital && token.text == "a" && next_acts);
-        let digit = token.text.len() <= 4
+            && (token.capital && matches!(token.spelled.as_bytes(), [b'b'..=b'h'])
+                || token.capital && token.spelled == "a" && next_acts);
+        let digit = token.spelled.len() <= 4
             && token.kind == Kind::Word
-            && token.text.ends_with(|c: char| c.is_ascii_digit())
+            && token.spelled.ends_with(|c: char| c.is_ascii_digit())
             && token.sorts.is_empty();
         let words = &self.lexicon.words;
         let counts = words.numbers.contains_key(&token.lemma) || words.ordinals.contains_key(&token.lemma);
         let known = |token: &Token| {
-            counts || !token.capital || !token.sorts.is_empty() || token.lemma != token.text || token.text.len() < 2
+            counts
+                || !token.capital
+                || !token.sorts.is_empty()
+                || token.lemma != token.spelled
+                || token.spelled.len() < 2
         };
         if known(token) && !letter && !digit {
             return None;
@@ -152,16 +156,16 @@ impl Reader<'_> {
                 || next.is(Sort::Verb) && next.bent == Bent::S
                 || next.is_mark(Mark::Comma)
                 || next.is_mark(Mark::Open)
-                || next.text == crate::lex::OWNS
+                || next.spelled == crate::lex::OWNS
         };
         if begins && title.is_none() && !self.tokens.get(at + 1).is_some_and(goes_on) {
             return None;
         }
         let letter_name = letter;
-        let mut noun = Noun::new(Head::Name(token.text.clone()), self.at..at + 1);
+        let mut noun = Noun::new(Head::Name(token.spelled.clone()), self.at..at + 1);
         noun.pick = Pick::The;
-        let last = token.text.chars().next_back();
-        noun.ordinal = match token.text.as_bytes() {
+        let last = token.spelled.chars().next_back();
+        noun.ordinal = match token.spelled.as_bytes() {
             [letter] if letter_name => Some(u32::from(letter.saturating_sub(b'a')) + 1),
             _ => last.and_then(|last| last.to_digit(10)),
         };
@@ -308,7 +312,7 @@ impl Reader<'_> {
             {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several =
-                    token.bent == Bent::S || token.text == "people" || noun.count.is_some_and(|count| count > 1);
+                    token.bent == Bent::S || token.spelled == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
                 noun.modifiers = self
                     .tokens
@@ -326,9 +330,9 @@ impl Reader<'_> {
                 {
                     self.at += 1;
                 }
-                let long = self
-                    .peek()
-                    .is_some_and(|next| next.text.len() > 1 && !next.text.ends_with(|c: char| c.is_ascii_digit()));
+                let long = self.peek().is_some_and(|next| {
+                    next.spelled.len() > 1 && !next.spelled.ends_with(|c: char| c.is_ascii_digit())
+                });
                 if !noun.several
                     && long
                     && let Some(name) = self.name()
@@ -347,7 +351,7 @@ impl Reader<'_> {
             };
             let sounds = token.sorts.is_empty()
                 && token.bent == Bent::Base
-                && self.lexicon.words.sounds_like_a_person(&token.text);
+                && self.lexicon.words.sounds_like_a_person(&token.spelled);
             if told && sounds && matches!(noun.pick, Pick::Some | Pick::The) && next.is_some_and(acts) {
                 noun.head = Head::Role(token.lemma.clone());
                 self.at += 1;
@@ -357,7 +361,7 @@ impl Reader<'_> {
                 return self.group(noun);
             }
             let before_role =
-                next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.text.ends_with("ing");
+                next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.spelled.ends_with("ing");
             if !Self::modifies(token, told) && !before_role {
                 break;
             }
@@ -417,14 +421,14 @@ impl Reader<'_> {
         if self.tokens.get(self.at + 1).is_some_and(|next| self.is_unit(next)) {
             return;
         }
-        let number = match (&token.kind, token.text.as_bytes()) {
+        let number = match (&token.kind, token.spelled.as_bytes()) {
             (Kind::Number(_), _) => self.count(),
             (Kind::Word, [letter @ b'a'..=b'h']) if token.capital => Some(u32::from(letter - b'a') + 1),
             _ => None,
         };
         if let (Some(number), Head::Role(role)) = (number, noun.head.clone()) {
             noun.ordinal = Some(number);
-            noun.head = Head::Name(format!("{role} {}", token.text));
+            noun.head = Head::Name(format!("{role} {}", token.spelled));
             (noun.beside, noun.pick) = (Some(role), Pick::The);
             self.at += 1;
         }
@@ -507,7 +511,7 @@ impl Reader<'_> {
             let number = self.lexicon.words.numbers.contains_key(&token.lemma);
             !token.is_said()
                 || !token.is(Sort::Empty) && joins.iter().any(|sort| token.is(*sort))
-                || token.text.ends_with("ly")
+                || token.spelled.ends_with("ly")
                 || token.is(Sort::Fill) && !token.is(Sort::Empty)
                 || number
         };

@@ -369,10 +369,8 @@ impl Maker<'_> {
             self.say(tokens, Says::Relate(vec![other], Some(relation), frame.side));
             return;
         }
-        let silent = cue.is_none()
-            && person.is_none()
-            && !frame.goes
-            && (frame.part.is_none() || whole.clause.places.is_empty());
+        let drives = frame.goes && !act.not && (frame.part.is_none() || !whole.clause.places.is_empty());
+        let silent = cue.is_none() && person.is_none() && !drives;
         if silent && !frame.plain {
             self.say(tokens, Says::NotRead);
             return;

@@ -12,7 +12,7 @@ impl Parser<'_> {
     pub(crate) fn noun(&mut self, noun: Noun, inner: bool, clause: &mut Clause) {
         let before = |sort| self.before().is_some_and(|before| before.word(sort));
         let (is, by, with) = (
-            before(Sort::Be) || self.before().is_some_and(|before| before.text == OWNS),
+            before(Sort::Be) || self.before().is_some_and(|before| before.spelled == OWNS),
             before(Sort::By),
             before(Sort::With),
         );

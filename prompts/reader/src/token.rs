@@ -139,7 +139,7 @@ pub(crate) struct Token {
     /// Where it stands, in bytes of the text. A word put in by a rewrite stands where the words stand that it replaces.
     pub(crate) at: Range<usize>,
     /// In lower case.
-    pub(crate) text: String,
+    pub(crate) spelled: String,
     /// In its base form.
     pub(crate) lemma: String,
     pub(crate) kind: Kind,
@@ -171,8 +171,8 @@ impl Token {
 impl fmt::Display for Token {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
-            Kind::Word if self.text == self.lemma => f.write_str(&self.text),
-            Kind::Word => write!(f, "{}/{}", self.text, self.lemma),
+            Kind::Word if self.spelled == self.lemma => f.write_str(&self.spelled),
+            Kind::Word => write!(f, "{}/{}", self.spelled, self.lemma),
             Kind::Number(number) => write!(f, "#{number}"),
             Kind::Mark(mark) => write!(f, "<{mark:?}>"),
         }
