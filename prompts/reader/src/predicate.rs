@@ -129,6 +129,11 @@ impl Parser<'_> {
         }
         clause.places.extend(found.place.map(|(class, at)| self.place_at(class, at)));
         let frame = self.lexicon.frames.get(found.row);
+        // What somebody has with them is no act of theirs.
+        if frame.is_some_and(|frame| frame.background.is_some()) {
+            clause.looks.extend(start..self.token());
+            return;
+        }
         let mut sign = frame.and_then(|frame| frame.says);
         if frame.is_some_and(|frame| frame.asks) {
             sign = self.speech().or(sign);

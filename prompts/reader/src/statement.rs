@@ -132,7 +132,7 @@ impl Maker<'_> {
         let mixed = !people.is_empty() && people.len() < clause.subject.len();
         let of_people = mixed.then(|| Clause { subject: people, ..clause.clone() });
         let clause = of_people.as_ref().unwrap_or(clause);
-        self.partly = !clause.left.is_empty();
+        self.partly = !clause.left.is_empty() || clause.acts.is_empty() && !clause.looks.is_empty();
         let mut when = Vec::new();
         let mut until = Vec::new();
         let mut turned = false;
@@ -246,18 +246,8 @@ impl Maker<'_> {
         let clause = whole.clause;
         let tokens = act.tokens.clone();
         // What the robot carries is no wish.
-        if robot && (frame.background.is_some() || frame.unplayed.is_some()) {
+        if robot && frame.unplayed.is_some() {
             self.say(tokens, Says::Background(Background::Errand));
-            return;
-        }
-        if let Some(reason) = frame.background {
-            if !clause.subject.is_empty() && !robot {
-                // What somebody has with them does not make them a part of the scene.
-                let partly = std::mem::replace(&mut self.partly, true);
-                self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
-                self.partly = partly;
-            }
-            self.say(tokens, Says::Background(reason));
             return;
         }
         if let Some(why) = &frame.unplayed {
@@ -451,8 +441,10 @@ impl Maker<'_> {
     }
 
     fn rest(&mut self, clause: &Clause) {
+        let robot = clause.subject.iter().any(|noun| noun.head == Head::Robot);
+        let reason = if robot { Background::Errand } else { Background::Looks };
         for run in runs(&clause.looks) {
-            self.say(run, Says::Background(Background::Looks));
+            self.say(run, Says::Background(reason));
         }
         for run in runs(&clause.left) {
             self.say(run, Says::NotRead);
