@@ -177,7 +177,7 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
         // `a meter and a half`
         let more = half(end + 1, "and") && half(end + 3, "half");
         let number = if more { number + 0.5 } else { number };
-        return Some((Amount::Distance(number * m), end + 1 + 3 * usize::from(more)));
+        return Some((Amount::Distance((number * m * 1000.0).round() / 1000.0), end + 1 + 3 * usize::from(more)));
     }
     words.seconds.get(&unit.lemma).map(|secs| (Amount::Time(number * secs), end + 1))
 }

@@ -216,7 +216,9 @@ impl Cast {
             fresh |= known.is_none();
             let meant = known.unwrap_or_else(|| self.meant(noun));
             self.tell(noun, &meant);
-            self.meant.insert(noun.tokens.start, meant.clone());
+            if !meant.is_empty() {
+                self.meant.insert(noun.tokens.start, meant.clone());
+            }
             for person in meant {
                 if !all.contains(&person) {
                     all.push(person);

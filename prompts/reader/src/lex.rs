@@ -204,6 +204,6 @@ fn swapped_or_lost(known: &str, text: &str) -> bool {
         letters.dedup();
         letters
     };
-    let lost = known.len() == text.len() + 1 && text.len() >= CORRECTED_FROM;
+    let lost = known.len() == text.len() + 1 && text.len() > CORRECTED_FROM;
     sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost
 }

@@ -199,7 +199,10 @@ impl Reader<'_> {
             Sort::Indefinite,
         ];
         let acts = token.is(Sort::Verb) && token.bent == Bent::S;
-        token.kind == Kind::Word && !acts && !joins.iter().any(|sort| token.is(*sort)) && token.bent != Bent::Ing
+        token.kind == Kind::Word
+            && !acts
+            && !joins.iter().any(|sort| token.is(*sort))
+            && !matches!(token.bent, Bent::Ing | Bent::Ed)
     }
 
     fn determiner(&mut self, noun: &mut Noun) -> bool {

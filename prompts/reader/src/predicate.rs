@@ -138,20 +138,18 @@ impl Parser<'_> {
         if frame.is_some_and(|frame| frame.asks) {
             sign = self.speech().or(sign);
         }
+        // `says "follow me" to two students`
+        let mut object = found.object;
+        if sign.is_some() && object.is_none() && self.peek().is_some_and(|chunk| chunk.word(Sort::To)) {
+            object = self.ahead(1).and_then(Chunk::noun).cloned();
+            self.at += 2 * usize::from(object.is_some());
+        }
         if frame.is_some_and(|frame| frame.denies) {
             clause.not = !clause.not;
             return;
         }
         let tokens = start..self.token();
-        let act = Predicate {
-            row: found.row,
-            object: found.object,
-            owner: found.owner,
-            not: clause.not,
-            passive,
-            sign,
-            tokens,
-        };
+        let act = Predicate { row: found.row, object, owner: found.owner, not: clause.not, passive, sign, tokens };
         clause.acts.push(act);
     }
 

@@ -336,8 +336,9 @@ impl Parser<'_> {
             Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
                 !clause.is_bare() || !clause.subject.is_empty()
             }
+            // `when a nurse who comes towards it sees it` is one condition.
             Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => {
-                !clause.subject.is_empty() || !clause.acts.is_empty()
+                !(inner && clause.is_bare()) && (!clause.subject.is_empty() || !clause.acts.is_empty())
             }
             // `that` after a noun begins a relative clause.
             Is::Word if chunk.word(Sort::Who) => {

@@ -176,6 +176,9 @@ impl Maker<'_> {
         }
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         self.places(clause, robot);
+        for noun in clause.subject.iter().filter(|noun| noun.group && noun.several) {
+            self.say(noun.tokens.clone(), Says::Group(vec![noun.clone()]));
+        }
         if let Some(does) = clause.does.filter(|_| clause.acts.is_empty() && !robot && !clause.subject.is_empty()) {
             let deed = Deed {
                 who: clause.subject.clone(),
@@ -219,6 +222,13 @@ impl Maker<'_> {
         let named: Vec<Noun> = named.cloned().collect();
         if !named.is_empty() {
             self.say(clause.tokens.clone(), Says::Introduce(named));
+        }
+        let tells = clause.acts.split_last().map_or(&[][..], |(_, before)| before);
+        let robot = clause.subject.iter().any(Noun::may_be_robot);
+        for act in tells.iter().filter(|act| !robot && !act.not) {
+            if let Some(relation) = self.lexicon.frames.get(act.row).and_then(|frame| frame.relate) {
+                self.say(act.tokens.clone(), Says::Relate(clause.subject.clone(), Some(relation), None));
+            }
         }
     }
 
@@ -384,7 +394,8 @@ impl Maker<'_> {
         let none = Reason { who: None, cue: Cue::Near, sign: None, amount: clause.within_m };
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         let own = clause.subject.is_empty() || clause.subject == subject;
-        for act in &clause.acts {
+        // Of several acts the last is waited for: those before it tell who.
+        for act in clause.acts.iter().rev() {
             let frame = self.lexicon.frames.get(act.row)?;
             let by_robot = if act.passive { clause.agent.as_ref().is_none_or(Noun::may_be_robot) } else { robot };
             if frame.asks || act.sign.is_some() {

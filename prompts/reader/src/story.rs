@@ -74,13 +74,15 @@ pub(crate) fn story(told: &Told) -> Story {
                     return;
                 };
                 // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
-                let stands = person.relation.is_none() || person.relation == Some(Relation::Static);
+                let follows = *relation == Relation::Behind;
+                let stands = person.relation.is_none() || person.relation == Some(Relation::Static) && !follows;
                 if stands {
                     person.relation = Some(*relation);
                 }
                 person.side = side.or(person.side);
             }),
-            Says::Group(who) if who.len() > 1 => {
+            // Those who talk on are no new group.
+            Says::Group(who) if who.len() > 1 && !story.share_a_group(who) => {
                 groups += 1;
                 story.each(who, |person| person.group = Some(groups));
             }
@@ -107,6 +109,19 @@ pub(crate) fn story(told: &Told) -> Story {
             if person.steps.iter().any(|step| step.act == Act::StandStill) {
                 person.relation = Some(Relation::Staying);
             }
+        }
+    }
+    // Whoever stays where they are as the robot comes into their room or car is inside.
+    let elevator = story.place == Some(PlaceClass::Elevator);
+    let closed = elevator || story.place == Some(PlaceClass::Room);
+    let comes_in = |step: &Step| step.when.iter().any(|reason| reason.cue == Cue::Visible);
+    for person in story.people.iter_mut().filter(|person| closed && person.relation.is_none_or(Relation::stands)) {
+        if person
+            .steps
+            .iter()
+            .any(|step| step.act == Act::StandStill && (comes_in(step) || elevator && step.when.is_empty()))
+        {
+            person.relation = Some(Relation::Staying);
         }
     }
     // Whoever comes out, or stays inside, is where the robot goes.
@@ -165,6 +180,12 @@ impl Story {
                 reason.who = reason.who.as_ref().map(|who| who.iter().copied().map(anew).collect());
             }
         }
+    }
+
+    /// Whether all of some people are in one group already.
+    fn share_a_group(&self, who: &[usize]) -> bool {
+        let group = |person: &usize| self.people.get(*person).and_then(|person| person.group);
+        who.first().and_then(group).is_some_and(|first| who.iter().all(|person| group(person) == Some(first)))
     }
 
     fn each(&mut self, who: &[usize], mut change: impl FnMut(&mut Person)) {
