@@ -117,6 +117,12 @@ impl Clause {
         }
     }
 
+    /// Whether its subject may follow: `in the corridor stands a nurse`.
+    pub(crate) fn is_turned(&self) -> bool {
+        let alone = matches!(self.acts[..], [Predicate { object: None, sign: None, .. }]);
+        alone && !self.own && matches!(self.join, Join::Start)
+    }
+
     pub(crate) fn is_bare(&self) -> bool {
         // What a word before the role says is no act of the clause yet.
         self.acts.iter().all(|act| self.subject.iter().any(|noun| noun.tokens == act.tokens))

@@ -141,6 +141,7 @@ fn may_stand_between(chunk: &Chunk) -> bool {
         Sort::By,
         Sort::At,
         Sort::From,
+        Sort::With,
         Sort::And,
         Sort::But,
         Sort::Who,

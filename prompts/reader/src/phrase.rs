@@ -120,7 +120,7 @@ impl Reader<'_> {
             next.is(Sort::Be)
                 || next.is(Sort::Do)
                 || next.is(Sort::Modal)
-                || next.is_mark(Mark::Colon)
+                || !next.is_said()
                 || next.is(Sort::And)
                 || next.is(Sort::Verb) && next.bent == Bent::S
         });

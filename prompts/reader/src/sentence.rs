@@ -325,11 +325,14 @@ impl Parser<'_> {
                             || before.word(Sort::At)
                             || before.word(Sort::To)
                             || before.word(Sort::Of)
-                            || before.lemma == "than"
-                            || before.lemma == "with"
+                            || before.word(Sort::With)
                     });
                 let complete = !clause.acts.is_empty() || inner && !clause.is_bare();
-                complete && !by && noun.tokens.start > 0
+                let turned = !inner
+                    && clause.is_turned()
+                    && names_somebody(noun)
+                    && !self.before().is_some_and(|before| before.is_mark(Mark::Comma));
+                complete && !by && !turned && noun.tokens.start > 0
             }
             Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::Or) => true,
             Is::Word if chunk.word(Sort::Then) => true,

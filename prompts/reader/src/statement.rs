@@ -170,8 +170,9 @@ impl Maker<'_> {
                     when.push(reason);
                     turned = true;
                 }
-                (Some(reason), Tie::Until) => until.push(reason),
-                (Some(_), Tie::Before | Tie::Unless) | (None, _) => self.beside(condition),
+                // `blocks it unless it asks` is done until then.
+                (Some(reason), Tie::Until | Tie::Unless) => until.push(reason),
+                (Some(_), Tie::Before) | (None, _) => self.beside(condition),
             }
         }
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
@@ -438,7 +439,8 @@ impl Maker<'_> {
             () if clause.acts.is_empty() => 2,
             () => 3,
         };
-        for At { class, to, from, token } in &clause.places {
+        for (number, At { class, to, from, token }) in clause.places.iter().enumerate() {
+            let part = part.filter(|_| number == 0);
             let says = match class {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),

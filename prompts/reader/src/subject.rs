@@ -17,7 +17,8 @@ impl Parser<'_> {
             before(Sort::With),
         );
         self.at += 1;
-        if clause.subject.is_empty() && (clause.is_bare() || !inner) && clause.acts.is_empty() {
+        let turned = !inner && clause.is_turned() && names_somebody(&noun);
+        if clause.subject.is_empty() && (turned || (clause.is_bare() || !inner) && clause.acts.is_empty()) {
             clause.not |= noun.pick == Pick::None;
             self.modifiers(&noun, clause);
             clause.subject.push(noun);
@@ -141,7 +142,7 @@ impl Parser<'_> {
             self.at += 3;
             return true;
         }
-        let count = usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1);
+        let (noun_count, count) = (noun.count, usize::try_from(noun.count.unwrap_or(1)).unwrap_or(1));
         let label = |noun: &Noun| noun.ordinal.is_some() && matches!(noun.head, Head::Name(_));
         let named = |noun: &Noun| {
             matches!(noun.head, Head::Name(_)) && noun.beside.is_none()
@@ -155,26 +156,21 @@ impl Parser<'_> {
                 || next.word(Sort::And)
                 || next.word(Sort::Modal)
         };
-        if !clause.subject.iter().all(named)
-            || count != clause.subject.len()
-                && !clause
-                    .subject
-                    .iter()
-                    .all(|noun| noun.count == noun.count.max(Some(u32::try_from(count).unwrap_or(1))))
-            || !(marks(self.peek()) || labeled && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Colon)))
-            || self.ahead(2).is_some_and(acts)
-        {
+        let people = clause.subject.len();
+        let agree = people == count || people == 1 && clause.subject.iter().all(|noun| noun.count == noun_count);
+        // Of all of them, where the numbers agree; else of the last: `Rosa, the porter, and Henk, the nurse, …`.
+        let from = if agree && clause.subject.iter().all(named) {
+            0
+        } else if count == 1 && clause.subject.last().is_some_and(|last| named(last) && !last.several) {
+            people.saturating_sub(1)
+        } else {
+            return false;
+        };
+        let colon = labeled && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Colon));
+        if !(marks(self.peek()) || colon) || self.ahead(2).is_some_and(acts) {
             return false;
         }
-        if count != clause.subject.len()
-            && clause
-                .subject
-                .iter()
-                .any(|noun| noun.several && noun.count.is_none_or(|own| usize::try_from(own) != Ok(count)))
-        {
-            return false;
-        }
-        for noun in &mut clause.subject {
+        for noun in clause.subject.iter_mut().skip(from) {
             noun.beside = Some(role.clone());
         }
         self.at += 2;
