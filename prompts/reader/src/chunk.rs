@@ -205,7 +205,9 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
             .filter_map(|pattern| Some((end_of(tokens, start, pattern)?, pattern.row)))
             .max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))
     };
-    let (mut end, row) = (at..=start).filter_map(longest).max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))?;
+    // The longest, and of those that end together the one that begins first: `narrow passage`.
+    let found = (at..=start).filter_map(|start| longest(start).map(|(end, row)| (end, std::cmp::Reverse(start), row)));
+    let (mut end, _, row) = found.max_by_key(|(end, start, row)| (*end, *start, std::cmp::Reverse(*row)))?;
     // `room 214`, `ward B`.
     let named = |token: &Token| {
         token.number().is_some() || token.spelled.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word

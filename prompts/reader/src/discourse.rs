@@ -95,11 +95,7 @@ impl Cast {
                 // `three people get out, a cleaner, a doctor and a visitor`
                 let count: u32 = who.iter().map(|noun| noun.count.unwrap_or(1)).sum();
                 let all = who.len() > 1 && u32::try_from(self.unnamed.len()) == Ok(count);
-                self.tells |= all
-                    && self
-                        .unnamed
-                        .iter()
-                        .all(|person| self.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str())));
+                self.tells |= all && self.anybody(&self.unnamed);
                 Says::Introduce(self.people(who))
             }
             Says::Relate(who, relation, side) => Says::Relate(self.people(who), *relation, *side),
@@ -254,6 +250,11 @@ impl Cast {
         }
     }
 
+    /// Whether some people have no role of their own.
+    fn anybody(&self, people: &[usize]) -> bool {
+        people.iter().all(|person| self.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str())))
+    }
+
     fn is_part_of_set(&self, people: &[usize]) -> bool {
         people.len() < self.set.len() && people.iter().all(|person| self.set.contains(person))
     }
@@ -372,6 +373,7 @@ impl Cast {
             && !matches!(noun.pick, Pick::The | Pick::None)
             && !self.unnamed.is_empty()
             && self.unnamed.len() >= count
+            && self.anybody(&self.unnamed)
         {
             let named: People = self.unnamed.drain(..count).collect();
             for person in &named {

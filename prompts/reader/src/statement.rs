@@ -218,7 +218,7 @@ impl Maker<'_> {
 
     /// Whoever is named in a condition is there.
     fn introduce(&mut self, clause: &Clause) {
-        let objects = clause.acts.iter().filter_map(|act| act.object.as_ref());
+        let objects = clause.acts.iter().flat_map(|act| act.object.iter().chain(&act.owner));
         let named = objects.chain(&clause.subject).filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)));
         let named: Vec<Noun> = named.cloned().collect();
         if !named.is_empty() {
