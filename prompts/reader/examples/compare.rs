@@ -231,6 +231,8 @@ struct Tally {
     both: usize,
     /// Wrong or missing facts of requests of which nothing was said to be unread.
     silent: usize,
+    /// The same of the old reader.
+    old_silent: usize,
     /// Requests read without a word left.
     whole: usize,
     /// Facts of the old reader, and of both.
@@ -243,11 +245,12 @@ impl Tally {
     fn line(&self, name: &str) -> String {
         let share = |part: usize, all: usize| if all == 0 { 0.0 } else { 100.0 * part as f64 / all as f64 };
         format!(
-            "{name:<28} {:>5} requests {:>6} facts  old {:>5.1} %  new {:>5.1} %  silent {:>4.1} %  read whole {:>5.1} %  statements: agreed {:>5.1} % of old, {:>5.1} % of new",
+            "{name:<28} {:>5} requests {:>6} facts  old {:>5.1} %  new {:>5.1} %  silent: old {:>4.1} %, new {:>4.1} %  read whole {:>5.1} %  statements: agreed {:>5.1} % of old, {:>5.1} % of new",
             self.requests,
             self.facts,
             share(self.old, self.facts),
             share(self.new, self.facts),
+            share(self.old_silent, self.facts),
             share(self.silent, self.facts),
             share(self.whole, self.requests),
             share(self.agreed, self.old_said),
@@ -262,6 +265,7 @@ impl Tally {
         self.new += other.new;
         self.both += other.both;
         self.silent += other.silent;
+        self.old_silent += other.old_silent;
         self.whole += other.whole;
         self.old_said += other.old_said;
         self.agreed += other.agreed;
@@ -348,6 +352,7 @@ fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options:
     let mut shown = options.list.is_none();
     for fact in &case.facts {
         let kind = kind(fact);
+        let old_honest = old.honest;
         let (old, right) = (old.holds(fact), new.holds(fact));
         let silent = !right && !new.honest;
         let own = Tally {
@@ -356,6 +361,7 @@ fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options:
             new: usize::from(right),
             both: usize::from(old && right),
             silent: usize::from(silent),
+            old_silent: usize::from(!old && !old_honest),
             ..Tally::default()
         };
         if !kind.contains("problem") {
