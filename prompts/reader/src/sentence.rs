@@ -341,7 +341,8 @@ impl Parser<'_> {
             }
             // `when a nurse who comes towards it sees it` is one condition.
             Is::Word if chunk.word(Sort::Who) && !chunk.word(Sort::Definite) => {
-                !(inner && clause.is_bare()) && (!clause.subject.is_empty() || !clause.acts.is_empty())
+                let begins = clause.subject.is_empty() && clause.acts.is_empty();
+                !(inner && clause.is_bare() || begins)
             }
             // `that` after a noun begins a relative clause.
             Is::Word if chunk.word(Sort::Who) => {
