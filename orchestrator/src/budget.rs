@@ -63,13 +63,19 @@ impl Turn<'_> {
 
 impl State {
     /// What tokens in and out cost the author of a scenario, in millionths.
-    pub(crate) fn money(&self, id: &ScenarioId, (input, output): (u64, u64)) -> u64 {
+    pub(crate) fn money(&self, id: &ScenarioId, tokens: (u64, u64)) -> u64 {
         let author = self.scenarios.get(id).and_then(|scenario| scenario.spec.settings.get("author"));
         let server = author.and_then(|author| AuthorSpec::server_in(author));
-        let price = server.and_then(|server| price_of(&self.policy.prices, server)).copied().unwrap_or_default();
-        let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
-        u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX)
+        let price = server.and_then(|server| price_of(&self.policy.prices, server));
+        price.map_or(0, |price| cost_of(*price, tokens))
     }
+}
+
+/// What tokens in and out cost, in millionths of the currency, where a million of them costs `price`, each in millionths as well.
+#[must_use]
+pub fn cost_of(price: (u64, u64), tokens: (u64, u64)) -> u64 {
+    let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
+    u64::try_from(cost(tokens.0, price.0) + cost(tokens.1, price.1)).unwrap_or(u64::MAX)
 }
 
 /// The price of a server with its model, `openai:gpt-4o`: that of the longest name in the table with which the model's name begins.

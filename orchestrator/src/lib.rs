@@ -64,7 +64,7 @@ mod steer_rules;
 mod world;
 
 pub use batches::{Batch, Queue};
-pub use budget::price_of;
+pub use budget::{cost_of, price_of};
 pub use event::{Answer, Effect, Event, Row, Token};
 pub use fsck::fsck;
 pub use policy::Policy;
@@ -72,6 +72,7 @@ pub use recover::Snapshot;
 pub use state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, ScenarioEnd, State, Worker};
 pub use status::{standing, status};
 pub use tally::Tally;
+pub use trace::trace_of;
 pub use why::whys_of_rows;
 
 /// One step: takes an event at time `now` and says what is to be saved and sent.

@@ -129,7 +129,7 @@ pub struct Share {
     pub running: u32,
 }
 
-/// Batches that are not done, the newest [`SHARES`] of them, so that no figure grows with the work; the others together under an empty
+/// Batches that are not done, the newest `SHARES` of them, so that no figure grows with the work; the others together under an empty
 /// name. No two have the same name and priority.
 #[must_use]
 pub fn shares(state: &State, now: Millis) -> Vec<Share> {

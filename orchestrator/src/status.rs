@@ -24,7 +24,7 @@ const FAULTS: usize = 6;
 const FAULT_CHARS: usize = 300;
 
 /// Answers a status question at time `now`, ms. Lines come in order of submission; ask again from `from` plus the number of lines
-/// until there are none. The first lines and the table come with the list of batches.
+/// until there are none. The first lines and the table come with the list of batches; from [`u32::MAX`] on there are none of them.
 ///
 /// A scenario with many runs takes several lines under the same id, each with a part of its jobs. Where jobs or the table were asked for,
 /// they come instead of lines.
@@ -60,7 +60,7 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
             *workers.entry(stage.name().to_owned()).or_default() += 1;
         }
     }
-    let with_lines = ask.job.is_none() && !ask.table;
+    let with_lines = ask.job.is_none() && !ask.table && ask.from < u32::MAX;
     let (batches, batches_left) =
         if ask.from == 0 && ask.job.is_none() { overview::batches(state, now) } else { (Vec::new(), 0) };
     let mut scenarios: Vec<ScenarioStatus> = Vec::new();

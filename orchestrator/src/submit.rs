@@ -57,8 +57,7 @@ impl Turn<'_> {
         let mut fresh: BTreeMap<ScenarioId, ScenarioSpec> = BTreeMap::new();
         let mut order = Vec::new();
         for spec in submit.scenarios {
-            let later = || self.state.queues.values().find_map(|one| Some((one.named(&spec.id)?, one.batch.as_str())));
-            let later = later();
+            let later = self.state.queues.values().find_map(|one| Some((one.named(&spec.id)?, one.batch.as_str())));
             let known = self.scenario(&spec.id).map(|known| (&known.spec, known.batch.as_str()));
             let known = known.or_else(|| later.as_ref().map(|(spec, batch)| (spec, *batch)));
             let known = known.or_else(|| fresh.get(&spec.id).map(|spec| (spec, submit.batch.as_str())));
@@ -111,6 +110,10 @@ impl Turn<'_> {
         for one in series {
             self.join(&submit.batch, submit.priority, one);
         }
+        let alone = u64::try_from(order.len()).unwrap_or(u64::MAX);
+        if alone > 0 {
+            self.opened(&submit.batch, alone);
+        }
         for id in order {
             if let Some(spec) = fresh.remove(&id) {
                 self.begin(&submit.batch, submit.priority, spec);
@@ -132,10 +135,10 @@ impl Turn<'_> {
         Ok(())
     }
 
+    /// Begins a scenario that was counted as open.
     fn begin(&mut self, batch: &str, priority: Priority, spec: ScenarioSpec) {
         let order = self.state.next_order;
         self.state.next_order += 1;
-        self.opened(batch, 1);
         self.begin_at(order, batch, priority, spec);
     }
 

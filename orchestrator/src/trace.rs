@@ -1,13 +1,20 @@
 //! The trace of a scenario: what logs of all processes have in common. It follows from what was submitted.
 
 use socrates_model::TraceContext;
+use socrates_model::wire::ScenarioSpec;
 
 use crate::state::Scenario;
 
+/// The span of a scenario of a batch, from which those of its jobs and attempts follow.
+#[must_use]
+pub fn trace_of(batch: &str, spec: &ScenarioSpec) -> TraceContext {
+    TraceContext::of_scenario(batch, &spec.id, &spec.request, spec.seed)
+}
+
 impl Scenario {
-    /// Its span, from which those of its jobs and attempts follow.
+    /// Its span.
     #[must_use]
     pub fn trace(&self) -> TraceContext {
-        TraceContext::of_scenario(&self.batch, &self.spec.id, &self.spec.request, self.spec.seed)
+        trace_of(&self.batch, &self.spec)
     }
 }

@@ -89,7 +89,7 @@ pub(crate) fn gestures() -> String {
     Gesture::table()
 }
 
-/// Who meets the robot more than once by the clauses of a proposal, and how often.
+/// The people that meet the robot more than once by the clauses of a proposal, and how often.
 pub(crate) fn meetings(proposal: &Proposal) -> BTreeMap<HumanId, u32> {
     let mut found: BTreeMap<HumanId, u32> = BTreeMap::new();
     for clause in proposal.expected_events.iter().filter(|clause| clause.must) {

@@ -77,7 +77,7 @@ impl SharedMemory {
     }
 
     /// It is there under this name.
-    #[cfg_attr(not(feature = "shm"), allow(dead_code, reason = "without shared memory there is never one"))]
+    #[cfg_attr(not(feature = "shm"), expect(dead_code, reason = "without shared memory there is never one"))]
     pub(crate) fn is_at(&self, name: &str) {
         self.0.get_or_init(|| name.to_owned());
     }

@@ -115,7 +115,7 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
     Style::from_settings(&asked).map(|style| style.settings()).map_err(broken)
 }
 
-/// Who writes paths, as a setting of jobs; empty where the author does.
+/// The writer of paths, as a setting of jobs; empty where the author writes them.
 pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Complaint> {
     let word = config.text("author.paths_by");
     match word.as_str() {

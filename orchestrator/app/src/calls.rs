@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use socrates_link::{Bus, LinkError, call, keys};
+use socrates_model::job::Stage;
 use socrates_model::wire::{
     Control, Limits, PastAsk, PastEnd, PastPart, Priority, ScenarioSpec, Series, StatusAsk, StatusReply, Steer,
     Steered, Submit, Submitted,
@@ -95,6 +96,16 @@ async fn hand_in(bus: &dyn Bus, wish: &Submit) -> Result<(u32, u32), Complaint> 
 /// How things stand.
 pub(crate) async fn status(bus: &dyn Bus, ask: &StatusAsk) -> Result<StatusReply, LinkError> {
     call(bus, keys::STATUS, "status", ask, CALL).await
+}
+
+/// How many there are of what, in one batch or, where its name is empty, in all: no line of a scenario comes with it.
+pub(crate) async fn counts(bus: &dyn Bus, batch: &str) -> Result<StatusReply, LinkError> {
+    status(bus, &StatusAsk { batch: batch.to_owned(), from: u32::MAX, ..StatusAsk::default() }).await
+}
+
+/// Whether so many workers of every stage are there.
+pub(crate) fn is_staffed(reply: &StatusReply, wanted: impl Fn(Stage) -> u32) -> bool {
+    Stage::WORKERS.into_iter().all(|stage| reply.workers.get(stage.name()).is_some_and(|count| *count >= wanted(stage)))
 }
 
 /// What is said where the orchestrator does not answer.

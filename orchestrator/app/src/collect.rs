@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use socrates_kit::Blobs;
 use socrates_link::Bus;
 use socrates_link::rules::Role;
-use socrates_model::wire::{PastEnd, StatusAsk};
+use socrates_model::wire::PastEnd;
 use socrates_model::{Digest, Location};
 use socrates_orchestrator::Snapshot;
 use tokio::runtime::Handle;
@@ -74,7 +74,7 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
     place::fix(&work, keep)?;
     Lines::of(&work).adopt(&root)?;
     let hold = Hold::take(&work)?;
-    let into = Into { root: &root, work: &work, keep };
+    let into = Target { root: &root, work: &work, keep };
     let made = bundles(talk, &known, &done, into, &hold).await?;
     bus.close().await;
     many::write(talk, &root, &work, Library::new(library, None, Some(keep), total, known.readings()), made)?;
@@ -96,8 +96,7 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
 
 /// Scenarios of a batch, those that are not made yet among them.
 async fn total(bus: &dyn Bus, batch: &str) -> Result<usize, Complaint> {
-    let ask = StatusAsk { batch: batch.to_owned(), table: true, ..StatusAsk::default() };
-    let told = calls::status(bus, &ask).await.map_err(calls::silent)?;
+    let told = calls::counts(bus, batch).await.map_err(calls::silent)?;
     Ok(usize::try_from(told.total).unwrap_or(usize::MAX))
 }
 
@@ -131,7 +130,7 @@ async fn bundles(
     talk: &Printer,
     known: &Arc<Known>,
     done: &[PastEnd],
-    into: Into<'_>,
+    into: Target<'_>,
     hold: &Hold,
 ) -> Result<Vec<Ended>, Complaint> {
     let at_once = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -145,7 +144,8 @@ async fn bundles(
         {
             let (known, end, keep) = (Arc::clone(known), end.clone(), into.keep);
             let (root, work) = (into.root.to_path_buf(), into.work.to_path_buf());
-            tasks.spawn(async move { (end.place, known.bundle(&end, Into { root: &root, work: &work, keep }).await) });
+            tasks
+                .spawn(async move { (end.place, known.bundle(&end, Target { root: &root, work: &work, keep }).await) });
         }
         let Some(came) = tasks.join_next().await else { break };
         let (place, ended) = came.map_err(|broke| {
@@ -160,7 +160,7 @@ async fn bundles(
 
 /// The library that is collected into.
 #[derive(Debug, Clone, Copy)]
-struct Into<'a> {
+struct Target<'a> {
     root: &'a Path,
     work: &'a Path,
     keep: Keep,
@@ -204,7 +204,7 @@ impl Known {
     }
 
     /// The bundle of a scenario, fetched and written unless it lies there.
-    async fn bundle(self: Arc<Self>, end: &PastEnd, into: Into<'_>) -> Result<Ended, Complaint> {
+    async fn bundle(self: Arc<Self>, end: &PastEnd, into: Target<'_>) -> Result<Ended, Complaint> {
         let rows = self.rows(end).await?;
         let (known, handle) = (self, Handle::current());
         let (id, place, keep) = (end.scenario.clone(), end.place, into.keep);

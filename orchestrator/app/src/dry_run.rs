@@ -73,8 +73,8 @@ pub(crate) async fn tell(
     let (whole, alone) = (all.len(), asked_for == 1 && options.shard.is_none());
     let wanted = many::shared(talk, options.shard, all);
     let goes = goes(options, &prepared, whole, alone)?;
-    let there = if goes.finished { wanted.len() } else { wanted.iter().filter(|one| lies(&goes.folder, one)).count() };
     let open: Vec<&Wanted<'_>> = wanted.iter().filter(|one| !goes.finished && !lies(&goes.folder, one)).collect();
+    let there = wanted.len() - open.len();
     let beside = goes.folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     let past = Past::of(&[goes.folder.as_path(), beside]);
     let jobs = jobs(&open);

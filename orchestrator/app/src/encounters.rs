@@ -5,7 +5,7 @@
 //! crossing and overtaking are the encounters of Francis et al. 2023 (figure 7); the sectors between them are where a way joins
 //! another obliquely.
 
-use socrates_model::{HumanId, Location, NodeId, Paths, Point, Proposal, Relation, Vector, Visit};
+use socrates_model::{HumanId, Location, NodeId, Paths, Polyline, Proposal, Relation, Vector, Visit};
 
 /// The direction of a way is taken over so much of it before the meeting, m: less is at the mercy of a node beside a door.
 const BEFORE_M: f64 = 2.0;
@@ -140,30 +140,10 @@ fn sector(human: HumanId, relation: Relation, visit: &Visit<'_>, paths: &Paths, 
 
 /// The direction of a way where it comes to a step, or where it leaves its start.
 fn direction(nodes: &[NodeId], step: usize, location: &Location) -> Option<Vector> {
-    let graph = &location.graph;
-    if step == 0 {
-        let way = graph.polyline(nodes);
-        let there = *way.first()?;
-        return (before(way.into_iter(), BEFORE_M)? - there).try_normalize(1e-9);
-    }
-    let way = graph.polyline(nodes.get(..=step)?);
-    let there = *way.last()?;
-    (there - before(way.into_iter().rev(), BEFORE_M)?).try_normalize(1e-9)
-}
-
-/// The point so far along a way, m; its end where it is shorter.
-fn before(mut way: impl Iterator<Item = Point>, mut left_m: f64) -> Option<Point> {
-    let mut at = way.next()?;
-    for next in way {
-        let step = next - at;
-        let length = step.norm();
-        if length >= left_m && length > 0.0 {
-            return Some(at + step * (left_m / length));
-        }
-        left_m -= length;
-        at = next;
-    }
-    Some(at)
+    let until = if step == 0 { nodes } else { nodes.get(..=step)? };
+    let way = Polyline::new(&location.graph.polyline(until));
+    let from_m = if step == 0 { 0.0 } else { way.length_m() - BEFORE_M };
+    (way.point(from_m + BEFORE_M) - way.point(from_m)).try_normalize(1e-9)
 }
 
 #[cfg(test)]

@@ -6,13 +6,13 @@
 //!
 //! Lines are made where the program starts (`orchestrator/cli`); here is where they go, and what is struck out of them.
 
-use std::fmt::Write as _;
 use std::fs::File;
 use std::io::Write as _;
 use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use jiff::Timestamp;
 use serde_json::Value;
 use socrates_llm::{ApiKey, strike_shapes};
 
@@ -129,23 +129,10 @@ pub fn struck(text: &str) -> String {
     }
 }
 
-/// A wall time, ms since 1970, as RFC 3339 in UTC: `2026-11-26T22:45:01.123Z`.
+/// A wall time, ms since 1970, as RFC 3339 in UTC: `2026-11-26T22:45:01.123Z`. A time after the year 9999 is told as the last before.
 pub fn stamp(ms: u64) -> String {
-    let (days, of_day) = (ms / 86_400_000, ms % 86_400_000);
-    // Days of the proleptic Gregorian calendar (Howard Hinnant, "chrono-compatible low-level date algorithms").
-    let shifted = days + 719_468;
-    let (era, of_era) = (shifted / 146_097, shifted % 146_097);
-    let year_of_era = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted_month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * shifted_month + 2) / 5 + 1;
-    let month = if shifted_month < 10 { shifted_month + 3 } else { shifted_month - 9 };
-    let year = year_of_era + era * 400 + u64::from(month <= 2);
-    let (secs, ms) = (of_day / 1_000, of_day % 1_000);
-    let (hours, minutes, secs) = (secs / 3_600, secs / 60 % 60, secs % 60);
-    let mut text = String::with_capacity(24);
-    let _written = write!(text, "{year:04}-{month:02}-{day:02}T{hours:02}:{minutes:02}:{secs:02}.{ms:03}Z");
-    text
+    let at = i64::try_from(ms).ok().and_then(|ms| Timestamp::from_millisecond(ms).ok());
+    format!("{:.3}", at.unwrap_or(Timestamp::MAX))
 }
 
 /// A line of a log that is of a trace.

@@ -7,7 +7,8 @@ use std::time::Duration;
 use socrates_kit::LocalBlobs;
 use socrates_link::{Overflow, keys};
 use socrates_model::wire::{Notice, Priority, ScenarioSpec, ScenarioStatus, StatusAsk};
-use socrates_model::{Digest, ScenarioEnd, ScenarioId, TraceContext};
+use socrates_model::{Digest, ScenarioEnd, ScenarioId};
+use socrates_orchestrator::trace_of;
 use socrates_store::Reader;
 use tokio::time::Instant;
 
@@ -159,8 +160,7 @@ async fn follow(
         .await
         .map_err(|why| Complaint::resumes(why.to_string()))?;
     for spec in &specs {
-        let trace = TraceContext::of_scenario(BATCH, &spec.id, &spec.request, spec.seed);
-        tracing::info!(scenario = %spec.id, trace_id = trace.trace_id(), "a scenario is handed in");
+        tracing::info!(scenario = %spec.id, trace_id = trace_of(BATCH, spec).trace_id(), "a scenario is handed in");
     }
     submit(bus.as_ref(), BATCH, Priority::Normal, specs).await?;
     // Listened to all the time: a signal between two rounds must not get lost.

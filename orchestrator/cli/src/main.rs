@@ -47,7 +47,7 @@ fn main() -> ExitCode {
             if complaint.code == Code::Input { Code::Stuck } else { complaint.code }
         }
         Err(complaint) => {
-            // Who left on purpose made no error.
+            // Leaving on purpose is no error.
             let word = if complaint.code == Code::Waits { "" } else { "error: " };
             talk.warn(&format!("{word}{complaint}"));
             talk.result(&complaint.object());

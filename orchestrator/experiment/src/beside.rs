@@ -3,6 +3,7 @@
 use socrates_stats::Interval;
 
 use crate::results::CellResult;
+use crate::tables::{of_cell, real};
 
 /// Columns of `predictions.csv`: what was measured on processes, and what the simulator says of the same cell.
 pub const PREDICTIONS: &str = "cell,workload,fault,rate,tries,policy,scenarios,same_end,realised,realised_low,realised_high,simulated_realised,attempts_a_job,simulated_attempts_a_job,faults_struck,simulated_faults_struck,time_p50_s,simulated_time_p50_s,time_p95_s,simulated_time_p95_s,recovery_p50_s,simulated_recovery_p50_s,recovery_p95_s,simulated_recovery_p95_s";
@@ -62,18 +63,11 @@ impl Beside {
     /// A row of `predictions.csv`.
     #[must_use]
     pub fn row(&self, measured: &CellResult) -> Vec<String> {
-        let cell = &measured.cell;
-        let real = |value: f64| format!("{value:.4}");
         let at = |times: Option<[f64; 2]>, place: usize| {
             times.and_then(|times| times.get(place).copied()).map_or_else(String::new, real)
         };
-        let mut row = vec![
-            cell.number.to_string(),
-            cell.workload.name.clone(),
-            cell.strike.shown(),
-            cell.rate.to_string(),
-            cell.tries.to_string(),
-            cell.policy.name.clone(),
+        let mut row = of_cell(&measured.cell).to_vec();
+        row.extend([
             self.of.to_string(),
             self.same.to_string(),
             real(self.success.measured.estimate),
@@ -84,7 +78,7 @@ impl Beside {
             real(self.amplification.simulated),
             self.struck.measured.to_string(),
             self.struck.simulated.to_string(),
-        ];
+        ]);
         for times in [self.time_s, self.recovery_s] {
             for place in 0..2 {
                 row.extend([at(times.measured, place), at(times.simulated, place)]);

@@ -5,6 +5,7 @@ use socrates_model::wire::Recorded;
 
 use crate::ledger::{AttemptRow, ScenarioRow};
 use crate::results::{CellResult, Figures, Limited, Pairing};
+use crate::spec::Cell;
 
 /// Columns of `attempts.csv`. Times are of the level's clock, ms after the batch was submitted.
 pub const ATTEMPTS: &str =
@@ -15,7 +16,7 @@ pub const SCENARIOS: &str = "cell,scenario,result,realised,first_cut,begun_ms,en
 pub const CELLS: &str = "cell,workload,fault,rate,tries,policy,scenarios,realised,success,success_low,success_high,first_cut,first_cut_low,first_cut_high,attempts,jobs,amplification,asks,tokens_in,tokens_out,tokens_per_realised,time_p50_s,time_p95_s,mean_asks,mean_asks_limit,mean_time_s,mean_time_limit_s,recoveries,recovery_p50_s,recovery_p95_s,recovery_p99_s,only_first_policy,only_this_policy,difference,difference_low,difference_high,mcnemar_p,faults_scheduled,faults_struck,lost,doubled,complaints,first_complaint";
 
 /// A number with four digits after the point.
-fn real(value: f64) -> String {
+pub(crate) fn real(value: f64) -> String {
     format!("{value:.4}")
 }
 
@@ -91,20 +92,26 @@ pub fn scenario(cell: usize, row: &ScenarioRow) -> Vec<String> {
     ]
 }
 
-/// A row of `cells.csv`.
-#[must_use]
-pub fn cell(result: &CellResult, figures: &Figures, means: &Limited, pairing: Option<&Pairing>) -> Vec<String> {
-    let cell = &result.cell;
-    let [tokens_in, tokens_out] = figures.tokens.map(|tokens| tokens.to_string());
-    let [p50, p95, p99] = figures.recovery_s.map_or_else(Default::default, |times| times.map(real));
-    let paired = |of: &dyn Fn(&Pairing) -> String| pairing.map_or_else(String::new, of);
-    vec![
+/// The first columns of a row about a cell: its number and what it has of each factor.
+pub(crate) fn of_cell(cell: &Cell) -> [String; 6] {
+    [
         cell.number.to_string(),
         cell.workload.name.clone(),
         cell.strike.shown(),
         cell.rate.to_string(),
         cell.tries.to_string(),
         cell.policy.name.clone(),
+    ]
+}
+
+/// A row of `cells.csv`.
+#[must_use]
+pub fn cell(result: &CellResult, figures: &Figures, means: &Limited, pairing: Option<&Pairing>) -> Vec<String> {
+    let [tokens_in, tokens_out] = figures.tokens.map(|tokens| tokens.to_string());
+    let [p50, p95, p99] = figures.recovery_s.map_or_else(Default::default, |times| times.map(real));
+    let paired = |of: &dyn Fn(&Pairing) -> String| pairing.map_or_else(String::new, of);
+    let mut row = of_cell(&result.cell).to_vec();
+    row.extend([
         result.scenarios.len().to_string(),
         figures.successes.to_string(),
         real(figures.success.estimate),
@@ -142,5 +149,6 @@ pub fn cell(result: &CellResult, figures: &Figures, means: &Limited, pairing: Op
         result.safety.doubled.to_string(),
         result.safety.complaints.to_string(),
         result.safety.first.clone(),
-    ]
+    ]);
+    row
 }

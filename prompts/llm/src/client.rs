@@ -156,7 +156,7 @@ impl ChatClient {
         }
         let mut ladder = self.config.dialect.ladder().to_vec();
         if request.grammar.is_some() && self.config.dialect.takes_grammar() {
-            // Who brings a grammar brings it because no schema says as much.
+            // A request has a grammar where no schema says as much.
             ladder.retain(|rung| *rung != Rung::Grammar);
             ladder.insert(0, Rung::Grammar);
         }

@@ -158,8 +158,10 @@ fn told(seen: &impl Fn(BlobMove), began: Instant, answered: Result<BlobMove, Lin
 fn tell(moved: BlobMove, digest: &Digest, len: u64, trace: Option<TraceContext>) {
     if moved.whole {
         let words = if moved.put { "an artifact came in" } else { "an artifact went out" };
-        let (trace_id, span_id) = (trace.map(|trace| trace.trace_id()), trace.map(|trace| trace.span_id()));
-        tracing::info!(%digest, len, trace_id, span_id, "{words}");
+        tracing::info!(
+            %digest, len, trace_id = trace.map(|trace| trace.trace_id()), span_id = trace.map(|trace| trace.span_id()),
+            "{words}"
+        );
     }
 }
 

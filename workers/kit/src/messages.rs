@@ -103,7 +103,7 @@ impl Worker {
         self.leaving.subscribe()
     }
 
-    /// Who this worker is.
+    /// What this worker says of itself.
     pub(crate) fn introduction(&self) -> Hello {
         Hello {
             instance: self.config.instance.clone(),

@@ -499,6 +499,10 @@ async fn artifacts_cross_the_bus_in_parts() {
         assert!(Blobs::Bus.get(&bus, Digest::of(b"nobody"), limit).await.is_err());
         let strange: Result<u64, _> = socrates_link::call(&*bus, keys::BLOB_PUT, "blob_put", &7, limit).await;
         assert!(strange.is_err());
+        // Four parts each way, the empty one each way, what is not there and what cannot be read: each is told after its answer went out.
+        while moves.lock().unwrap().len() < 12 {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
         server.abort();
         let moves = moves.lock().unwrap();
         for put in [true, false] {

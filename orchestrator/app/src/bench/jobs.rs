@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 
 use serde_json::json;
 use socrates_kit::{Blobs, Done, Failure, Job, LocalBlobs, Output, Stage, WorkerConfig, media};
+use socrates_link::Bus;
 use socrates_link::rules::Role as Part;
-use socrates_link::{Bus, LinkError};
 use socrates_model::job::Stage as StageName;
-use socrates_model::wire::{Priority, ScenarioSpec, StatusAsk, StatusReply};
+use socrates_model::wire::{Priority, ScenarioSpec};
 use socrates_model::{PlannerName, Role, ScenarioId, Verdict};
 
 use super::machine;
@@ -169,7 +169,7 @@ async fn reached(config: &Config, connect: &str) -> Result<Arc<dyn Bus>, Complai
         let bus = process::client(config, Part::Client, connect, "main", "bench").await;
         if let Ok(bus) = bus {
             while begun.elapsed() < START {
-                if standing(bus.as_ref()).await.is_ok() {
+                if calls::counts(bus.as_ref(), "").await.is_ok() {
                     return Ok(bus);
                 }
                 tokio::time::sleep(PAUSE).await;
@@ -181,17 +181,12 @@ async fn reached(config: &Config, connect: &str) -> Result<Arc<dyn Bus>, Complai
     }
 }
 
-/// The figures of how it stands, without a line of any scenario.
-async fn standing(bus: &dyn Bus) -> Result<StatusReply, LinkError> {
-    calls::status(bus, &StatusAsk { from: u32::MAX, ..StatusAsk::default() }).await
-}
-
 /// Waits for so many workers of every stage.
 async fn waited(bus: &dyn Bus, workers: u32) -> Result<(), Complaint> {
     let begun = Instant::now();
     while begun.elapsed() < START {
-        if let Ok(reply) = standing(bus).await
-            && StageName::WORKERS.iter().all(|stage| reply.workers.get(stage.name()).is_some_and(|n| *n >= workers))
+        if let Ok(reply) = calls::counts(bus, "").await
+            && calls::is_staffed(&reply, |_stage| workers)
         {
             return Ok(());
         }
@@ -259,11 +254,11 @@ async fn round_trip(config: &Config, connect: &str, bus: &dyn Bus) -> Result<f64
 async fn alone(bus: &dyn Bus, spec: &ScenarioSpec) -> Result<f64, Complaint> {
     let mut times = Vec::new();
     for one in named(spec, "alone", u32::try_from(ALONE).unwrap_or(u32::MAX))? {
-        let before = standing(bus).await.map_err(|why| super::ours(why.to_string()))?.done;
+        let before = calls::counts(bus, "").await.map_err(|why| super::ours(why.to_string()))?.done;
         let begun = Instant::now();
         calls::submit(bus, "alone", Priority::Normal, vec![one]).await?;
         // Asked as often as it answers: a pause would be measured with it.
-        while standing(bus).await.is_ok_and(|reply| reply.done == before) {
+        while calls::counts(bus, "").await.is_ok_and(|reply| reply.done == before) {
             if begun.elapsed() > START {
                 return Err(super::ours("a scenario was not made".to_owned()));
             }
@@ -291,7 +286,7 @@ struct Made {
 
 /// Hands in all scenarios and waits for the last.
 async fn stream(bus: &dyn Bus, spec: &ScenarioSpec, scenarios: u32, orchestrator: u32) -> Result<Made, Complaint> {
-    let count = || async { standing(bus).await.map(|reply| reply.done).ok() };
+    let count = || async { calls::counts(bus, "").await.map(|reply| reply.done).ok() };
     let before = count().await.unwrap_or_default();
     let cpu_before = machine::cpu_s(orchestrator);
     let begun = Instant::now();

@@ -264,8 +264,8 @@ fn ticks(axis: &Axis, about: usize) -> Vec<(f64, String)> {
         .collect()
 }
 
-#[expect(clippy::cast_precision_loss, reason = "panels, policies and letters are few")]
-const fn count(of: usize) -> f64 {
+#[expect(clippy::cast_precision_loss, reason = "what a picture shows is few")]
+pub(super) const fn count(of: usize) -> f64 {
     of as f64
 }
 

@@ -4,7 +4,7 @@ use socrates_draw::palette;
 use socrates_draw::svg::Svg;
 use socrates_experiment::heat::{Heat, HeatRow, REALISED, ends};
 
-use super::chart::STAMP;
+use super::chart::{STAMP, count};
 
 /// Width of the drawing, px.
 const WIDTH: f64 = 960.0;
@@ -83,11 +83,6 @@ fn percent(share: f64) -> String {
 
 fn short(text: &str, letters: usize) -> String {
     if text.chars().count() <= letters { text.to_owned() } else { text.chars().take(letters).chain(['…']).collect() }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "scenarios, policies and ends are few")]
-const fn count(of: usize) -> f64 {
-    of as f64
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ use socrates_experiment::spec::{Cell, Spec};
 use socrates_experiment::{BATCH, Kind, Observed, Played, Told, asked, texts};
 use socrates_link::{Bus, keys};
 use socrates_model::job::{JobKey, Stage};
-use socrates_model::wire::{PastEnd, Priority, StatusAsk};
+use socrates_model::wire::{PastEnd, Priority};
 use socrates_store::{Reader, audit};
 use tokio::io::{AsyncBufReadExt as _, BufReader};
 use tokio::process::{Child, ChildStdin};
@@ -141,8 +141,7 @@ async fn listen(bus: Arc<dyn Bus>, tell: mpsc::Sender<Heard>) -> Result<tokio::t
                     None => return,
                 },
                 () = tokio::time::sleep(LOOK) => {
-                    let ask = StatusAsk { from: u32::MAX, ..StatusAsk::default() };
-                    let Ok(reply) = calls::status(bus.as_ref(), &ask).await else { continue };
+                    let Ok(reply) = calls::counts(bus.as_ref(), "").await else { continue };
                     let at = Instant::now();
                     if reply.done != done && let Ok(ends) = calls::ends(bus.as_ref()).await {
                         done = reply.done;
@@ -233,13 +232,9 @@ impl Crowd<'_> {
     /// Waits until every worker is known to the orchestrator.
     async fn gathered(&mut self, bus: &dyn Bus) -> Result<(), Complaint> {
         let begun = Instant::now();
-        let ask = StatusAsk { from: u32::MAX, ..StatusAsk::default() };
-        let wanted = |stage: &Stage| self.site.spec.workers.of(*stage);
         while begun.elapsed() < START {
-            if let Ok(reply) = calls::status(bus, &ask).await
-                && Stage::WORKERS
-                    .iter()
-                    .all(|stage| reply.workers.get(stage.name()).is_some_and(|n| *n >= wanted(stage)))
+            if let Ok(reply) = calls::counts(bus, "").await
+                && calls::is_staffed(&reply, |stage| self.site.spec.workers.of(stage))
             {
                 return Ok(());
             }

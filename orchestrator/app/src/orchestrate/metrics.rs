@@ -10,7 +10,7 @@ use socrates_gateway::plain::{Plain, Source};
 use socrates_model::fault::FailureClass;
 use socrates_model::job::Stage;
 use socrates_orchestrator::tally::{Histogram, Tally};
-use socrates_orchestrator::{AttemptEnd, JobState, Millis, State, overview, price_of};
+use socrates_orchestrator::{AttemptEnd, JobState, Millis, State, cost_of, overview, price_of};
 use tokio::net::TcpListener;
 use tokio::sync::{mpsc, oneshot};
 
@@ -232,11 +232,9 @@ fn authors(page: &mut Page, state: &State) {
         "counter",
         "Money that authors cost, in the currency of author.prices; a model without a price has no series.",
     );
-    for (model, (asked, answered)) in &state.tally.tokens {
-        if let Some((of_asked, of_answered)) = price_of(&state.policy.prices, model) {
-            let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
-            let millionths = cost(*asked, *of_asked) + cost(*answered, *of_answered);
-            let spent = in_units(u64::try_from(millionths).unwrap_or(u64::MAX), 1_000_000);
+    for (model, tokens) in &state.tally.tokens {
+        if let Some(price) = price_of(&state.policy.prices, model) {
+            let spent = in_units(cost_of(*price, *tokens), 1_000_000);
             page.sample("socrates_llm_cost_total", &[("model", model.as_str())], spent);
         }
     }

@@ -61,10 +61,10 @@ fn tell_of_grants(effects: &[Effect], worker: &str) {
         let Answer::Acquired(Acquired::Grants(grants)) = &**answer else { continue };
         for grant in grants {
             let (key, trace) = (&grant.spec.key, grant.traceparent);
-            let (trace_id, span_id) = (trace.map(|trace| trace.trace_id()), trace.map(|trace| trace.span_id()));
             tracing::info!(
                 job = %key, scenario = %key.scenario, stage = key.stage.name(), attempt = grant.attempt, fence = grant.fence,
-                worker, trace_id, span_id, "an attempt is handed out"
+                worker, trace_id = trace.map(|trace| trace.trace_id()), span_id = trace.map(|trace| trace.span_id()),
+                "an attempt is handed out"
             );
         }
     }
@@ -73,11 +73,11 @@ fn tell_of_grants(effects: &[Effect], worker: &str) {
 /// A line for each report, in the trace that its worker says.
 fn tell_of(report: &Report, trace: Option<TraceContext>) {
     let key = &report.key;
-    let (trace_id, span_id) = (trace.map(|trace| trace.trace_id()), trace.map(|trace| trace.span_id()));
     let outcome = if report.outcome == Outcome::Ok { "ok" } else { "failed" };
     tracing::info!(
         job = %key, scenario = %key.scenario, stage = key.stage.name(), attempt = report.attempt, fence = report.fence,
-        worker = report.instance, outcome, wall_ms = report.wall_ms, trace_id, span_id, "a report came"
+        worker = report.instance, outcome, wall_ms = report.wall_ms, trace_id = trace.map(|trace| trace.trace_id()),
+        span_id = trace.map(|trace| trace.span_id()), "a report came"
     );
 }
 
@@ -268,9 +268,11 @@ impl Owner {
                 Effect::Notice { batch, notice } => commit.said.notices.push((batch, *notice)),
                 Effect::Hint(stage) => commit.said.hints.push(stage),
                 Effect::ScenarioDone { id, end } => {
-                    let trace = self.state.scenarios.get(&id).map(Scenario::trace);
-                    let trace_id = trace.map(|trace| trace.trace_id());
-                    tracing::info!(scenario = %id, result = end.name(), trace_id, "a scenario ended");
+                    let trace = || self.state.scenarios.get(&id).map(Scenario::trace);
+                    tracing::info!(
+                        scenario = %id, result = end.name(), trace_id = trace().map(|trace| trace.trace_id()),
+                        "a scenario ended"
+                    );
                 }
             }
         }

@@ -79,7 +79,7 @@ impl Call<'_> {
 
     /// The answer with what the server said of itself, or with our estimates.
     fn told(&self, text: String, cut: bool, model: Option<String>, usage: Option<Usage>) -> ChatAnswer {
-        // Who counts nothing at all has not counted.
+        // A server that counts nothing at all has not counted.
         let usage = usage.filter(|usage| usage.input + usage.output > 0);
         let estimated = usage.is_none();
         let usage = usage.unwrap_or_else(|| Usage {
