@@ -64,6 +64,16 @@ pub(crate) struct At {
     pub(crate) token: usize,
 }
 
+/// An amount with the tokens that say it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Measure {
+    pub(crate) value: f64,
+    /// Its first token.
+    pub(crate) from: usize,
+    /// The token behind it.
+    pub(crate) to: usize,
+}
+
 /// A clause.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Clause {
@@ -81,10 +91,10 @@ pub(crate) struct Clause {
     pub(crate) agent: Option<Noun>,
     /// Whether it says `does`, or `does not`, and not what.
     pub(crate) does: Option<bool>,
-    pub(crate) lasts_s: Option<f64>,
-    pub(crate) after_s: Option<f64>,
-    pub(crate) within_m: Option<f64>,
-    pub(crate) pace_mps: Option<f64>,
+    pub(crate) lasts_s: Option<Measure>,
+    pub(crate) after_s: Option<Measure>,
+    pub(crate) within_m: Option<Measure>,
+    pub(crate) pace_mps: Option<Measure>,
     pub(crate) places: Vec<At>,
     pub(crate) conditions: Vec<Condition>,
     /// Tokens of which nothing was made.

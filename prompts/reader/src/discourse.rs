@@ -124,6 +124,7 @@ impl Cast {
             Says::RobotGoal(class) => Says::RobotGoal(*class),
             Says::Background(reason) => Says::Background(*reason),
             Says::NotPlayed(why) => Says::NotPlayed(why.clone()),
+            Says::Goes => Says::Goes,
             Says::NotRead => Says::NotRead,
         })
     }

@@ -19,8 +19,8 @@ pub(crate) struct Found {
     pub(crate) owner: Option<Noun>,
     /// A place in it, and its chunk.
     pub(crate) place: Option<(Option<PlaceClass>, usize)>,
-    /// A distance or time in it.
-    pub(crate) amount: Option<Amount>,
+    /// A distance or time in it, and its chunk.
+    pub(crate) amount: Option<(Amount, usize)>,
     /// Adverbs that stand within it.
     pub(crate) between: Vec<usize>,
     /// Whether it stands in the passive, with its object before it.
@@ -123,7 +123,7 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
             true
         }
         (Part::Amount, Is::Amount(amount)) => {
-            found.amount = Some(*amount);
+            found.amount = Some((*amount, found.end));
             true
         }
         _ => false,

@@ -49,7 +49,7 @@ mod passes;
 
 mod examples;
 
-pub use account::{Fate, Piece, Read};
+pub use account::{Fate, Piece, Read, Verdict};
 pub use discourse::People;
 pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};

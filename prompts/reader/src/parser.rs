@@ -5,7 +5,6 @@ use crate::clause::Clause;
 use crate::lex::OWNS;
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun};
-use crate::token::Sort;
 
 pub(crate) struct Parser<'a> {
     pub(crate) chunks: &'a [Chunk],
@@ -50,27 +49,5 @@ pub(crate) fn names_somebody(noun: &Noun) -> bool {
 
 /// Whether a word says nothing of its own.
 pub(crate) fn says_nothing(chunk: &Chunk) -> bool {
-    let silent = [
-        Sort::Fill,
-        Sort::Empty,
-        Sort::Be,
-        Sort::Do,
-        Sort::Have,
-        Sort::Modal,
-        Sort::Definite,
-        Sort::Indefinite,
-        Sort::To,
-        Sort::Of,
-        Sort::By,
-        Sort::At,
-        Sort::From,
-        Sort::Then,
-        Sort::Who,
-        Sort::And,
-        Sort::While,
-        Sort::Later,
-        Sort::After,
-        Sort::Before,
-    ];
-    chunk.is == Is::Word && (chunk.spelled == OWNS || silent.iter().any(|sort| chunk.sorts.has(*sort)))
+    chunk.is == Is::Word && (chunk.spelled == OWNS || chunk.sorts.say_nothing())
 }

@@ -61,7 +61,7 @@ impl<'a> Passes<'a> {
     /// What came of it.
     #[must_use]
     pub fn read(self) -> Read {
-        let pieces = account(&self.scene, &self.told.statements);
+        let pieces = account(&self.text, &self.scene, &self.clauses, &self.told.statements);
         Read { story: self.story, pieces }
     }
 }
@@ -81,7 +81,7 @@ impl fmt::Display for Passes<'_> {
             writeln!(f, "statement  {}", Shown(&statement.says))?;
         }
         write!(f, "{}", self.story)?;
-        for piece in account(&self.scene, &self.told.statements) {
+        for piece in account(&self.text, &self.scene, &self.clauses, &self.told.statements) {
             if !matches!(piece.fate, Fate::Read) {
                 writeln!(f, "{:?}: {}", piece.fate, self.text.get(piece.at).unwrap_or_default())?;
             }
@@ -110,7 +110,7 @@ fn write_clause(f: &mut fmt::Formatter<'_>, clause: &Clause, lexicon: &Lexicon, 
     }
     for (what, amount) in [("for", clause.lasts_s), ("after", clause.after_s), ("within", clause.within_m)] {
         if let Some(amount) = amount {
-            write!(f, " {what} {amount}")?;
+            write!(f, " {what} {}", amount.value)?;
         }
     }
     for at in &clause.places {
@@ -150,6 +150,7 @@ impl fmt::Display for Shown<'_> {
             Says::RobotGoal(class) => write!(f, "robot goes {class}"),
             Says::Background(reason) => write!(f, "background {}", reason.name()),
             Says::NotPlayed(why) => write!(f, "not played: {why}"),
+            Says::Goes => f.write_str("goes with the rest"),
             Says::NotRead => f.write_str("not read"),
         }
     }

@@ -1,7 +1,7 @@
 //! Predicates: acts by the rows of `frames.toml`, what is said, amounts and places.
 
 use crate::chunk::{Amount, Chunk, Is};
-use crate::clause::{At, Clause, Predicate};
+use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
 use crate::noun::{BRISK_MPS, SLOW_MPS};
 use crate::parser::{Parser, says_nothing};
@@ -23,15 +23,22 @@ impl Parser<'_> {
         let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
         let after = before.is_some_and(|before| before.word(Sort::After))
             || self.ahead(1).is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After));
+        let measure = self.measure(amount, self.at);
         match amount {
-            Amount::Distance(m) => clause.within_m = Some(m),
-            Amount::Time(secs) if after => clause.after_s = Some(secs),
-            Amount::Time(secs) => clause.lasts_s = Some(secs),
+            Amount::Distance(_) => clause.within_m = Some(measure),
+            Amount::Time(_) if after => clause.after_s = Some(measure),
+            Amount::Time(_) => clause.lasts_s = Some(measure),
         }
         self.at += 1;
         if after && self.peek().is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After)) {
             self.at += 1;
         }
+    }
+
+    fn measure(&self, amount: Amount, at: usize) -> Measure {
+        let tokens = self.chunks.get(at).map_or(0..0, |chunk| chunk.tokens.clone());
+        let (Amount::Distance(value) | Amount::Time(value)) = amount;
+        Measure { value, from: tokens.start, to: tokens.end }
     }
 
     pub(crate) fn place(&mut self, class: Option<PlaceClass>, clause: &mut Clause) {
@@ -81,9 +88,9 @@ impl Parser<'_> {
             clause.not = true;
             clause.does = clause.does.map(|_| false);
         } else if chunk.word(Sort::Slow) {
-            clause.pace_mps = Some(SLOW_MPS);
+            clause.pace_mps = Some(pace(SLOW_MPS, chunk));
         } else if chunk.word(Sort::Brisk) {
-            clause.pace_mps = Some(BRISK_MPS);
+            clause.pace_mps = Some(pace(BRISK_MPS, chunk));
         } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) {
             clause.looks.extend(chunk.tokens.clone());
         } else if !says_nothing(chunk) {
@@ -109,23 +116,23 @@ impl Parser<'_> {
         for between in &found.between {
             let Some(chunk) = self.chunks.get(*between) else { continue };
             if chunk.word(Sort::Slow) {
-                clause.pace_mps = Some(SLOW_MPS);
+                clause.pace_mps = Some(pace(SLOW_MPS, chunk));
             } else if chunk.word(Sort::Brisk) {
-                clause.pace_mps = Some(BRISK_MPS);
+                clause.pace_mps = Some(pace(BRISK_MPS, chunk));
             }
         }
-        let verb = self.peek().map(|chunk| (chunk.word(Sort::Slow), chunk.word(Sort::Brisk)));
-        match verb {
-            Some((true, _)) => clause.pace_mps = Some(SLOW_MPS),
-            Some((_, true)) => clause.pace_mps = Some(BRISK_MPS),
-            _ => {}
+        if let Some(verb) = self.peek() {
+            let own = verb.word(Sort::Slow).then_some(SLOW_MPS).or(verb.word(Sort::Brisk).then_some(BRISK_MPS));
+            clause.pace_mps = own.map(|mps| pace(mps, verb)).or(clause.pace_mps);
         }
         let passive = found.passive && self.at > 0;
         self.at = found.end;
-        match found.amount {
-            Some(Amount::Distance(m)) => clause.within_m = Some(m),
-            Some(Amount::Time(secs)) => clause.lasts_s = Some(secs),
-            None => {}
+        if let Some((amount, at)) = found.amount {
+            let measure = Some(self.measure(amount, at));
+            match amount {
+                Amount::Distance(_) => clause.within_m = measure,
+                Amount::Time(_) => clause.lasts_s = measure,
+            }
         }
         clause.places.extend(found.place.map(|(class, at)| self.place_at(class, at)));
         let frame = self.lexicon.frames.get(found.row);
@@ -197,4 +204,9 @@ impl Parser<'_> {
         }
         None
     }
+}
+
+/// A pace with the word that says it.
+fn pace(mps: f64, chunk: &Chunk) -> Measure {
+    Measure { value: mps, from: chunk.tokens.start, to: chunk.tokens.end }
 }

@@ -10,7 +10,7 @@
 //! A clause ends at a mark, at a join, and where another subject begins.
 
 use crate::chunk::{Chunk, Is};
-use crate::clause::{Clause, Condition, Join, Predicate, Tie};
+use crate::clause::{Clause, Condition, Join, Measure, Predicate, Tie};
 use crate::find::longest;
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun};
@@ -33,7 +33,7 @@ impl Parser<'_> {
         let mut ahead: Vec<Condition> = Vec::new();
         let first = self.found.len();
         // `Ten seconds later …`: of the acts that follow.
-        let mut later: Option<f64> = None;
+        let mut later: Option<Measure> = None;
         let mut join = Join::Start;
         let mut apart = true;
         while let Some(chunk) = self.peek() {

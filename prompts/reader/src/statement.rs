@@ -53,6 +53,8 @@ pub enum Says<W> {
     RobotGoal(PlaceClass),
     /// It asks for nothing.
     Background(Background),
+    /// It goes with what the rest of its clause says.
+    Goes,
     /// It is understood, and not played.
     NotPlayed(String),
     /// It is not understood.
@@ -80,6 +82,23 @@ pub struct Deed<W> {
     pub says: Option<Gesture>,
     /// Whether it is what was asked for just before: `does so`.
     pub obeys: bool,
+}
+
+impl<W> Deed<W> {
+    /// Somebody does something, at once and to nobody.
+    pub(crate) fn of(who: W, act: Act) -> Self {
+        Self {
+            who,
+            act,
+            whom: None,
+            not: false,
+            when: Vec::new(),
+            until: Vec::new(),
+            for_s: None,
+            says: None,
+            obeys: false,
+        }
+    }
 }
 
 /// A statement with where it stands.
@@ -125,6 +144,26 @@ impl Maker<'_> {
         self.first = false;
     }
 
+    /// Words that go with what is said of their clause.
+    fn goes(&mut self, tokens: Range<usize>) {
+        self.say(tokens, Says::Goes);
+    }
+
+    /// Noun phrases that go with what is said of their clause.
+    fn nouns_go(&mut self, nouns: &[Noun]) {
+        for noun in nouns {
+            self.goes(noun.tokens.clone());
+        }
+    }
+
+    /// Some people are there.
+    fn are_there(&mut self, nouns: Named) {
+        self.nouns_go(nouns.get(1..).unwrap_or_default());
+        if let Some(tokens) = nouns.first().map(|noun| noun.tokens.clone()) {
+            self.say(tokens, Says::Introduce(nouns));
+        }
+    }
+
     fn clause(&mut self, clause: &Clause) {
         // `a visitor and the robot come towards each other`: said of the visitor.
         let people: Vec<Noun> =
@@ -133,97 +172,116 @@ impl Maker<'_> {
         let of_people = mixed.then(|| Clause { subject: people, ..clause.clone() });
         let clause = of_people.as_ref().unwrap_or(clause);
         self.partly = !clause.left.is_empty() || clause.acts.is_empty() && !clause.looks.is_empty();
-        let mut when = Vec::new();
-        let mut until = Vec::new();
-        let mut turned = false;
-        let stays = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.denied.is_some());
-        let denied = clause.acts.iter().any(|act| act.not && !stays(act));
-        for condition in &clause.conditions {
-            let reason = self.reason(condition, &clause.subject);
-            self.introduce(&condition.clause);
-            if reason.is_some() {
-                let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
-                self.places(&condition.clause, robot);
-            }
-            // Whoever is waited for makes the sign.
-            if let Some(Reason { who: Some(who), cue: Cue::Says, sign, .. }) = &reason {
-                let deed = Deed {
-                    who: who.clone(),
-                    act: Act::Sign,
-                    whom: None,
-                    not: false,
-                    when: Vec::new(),
-                    until: Vec::new(),
-                    for_s: None,
-                    says: *sign,
-                    obeys: false,
-                };
-                self.say(condition.clause.tokens.clone(), Says::Do(deed));
-            }
-            if reason.is_some() {
-                self.rest(&condition.clause);
-            }
-            match (reason, condition.tie) {
-                (Some(reason), Tie::When | Tie::While | Tie::After) => when.push(reason),
-                // `does not move until`: moves then.
-                (Some(reason), Tie::Until | Tie::Before | Tie::Unless) if denied => {
-                    when.push(reason);
-                    turned = true;
-                }
-                // `blocks it unless it asks` is done until then.
-                (Some(reason), Tie::Until | Tie::Unless) => until.push(reason),
-                (Some(_), Tie::Before) | (None, _) => self.beside(condition),
-            }
-        }
+        let start = self.found.len();
+        let Times { when, until, turned, used } = self.times(clause);
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         self.places(clause, robot);
         for noun in clause.subject.iter().filter(|noun| noun.group && noun.several) {
             self.say(noun.tokens.clone(), Says::Group(vec![noun.clone()]));
         }
+        let whole = Whole { clause, when: &when, until: &until, turned };
         if let Some(does) = clause.does.filter(|_| clause.acts.is_empty() && !robot && !clause.subject.is_empty()) {
-            let deed = Deed {
-                who: clause.subject.clone(),
-                act: Act::Navigate,
-                whom: None,
-                not: !does,
-                when: when.clone(),
-                until: until.clone(),
-                for_s: None,
-                says: None,
-                obeys: true,
-            };
-            self.say(clause.tokens.clone(), Says::Do(deed));
+            let deed = whole.answer(clause.subject.clone(), does);
+            self.say(clause.subject.first().map_or(0..0, |noun| noun.tokens.clone()), Says::Do(deed));
         } else if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
-            self.say(clause.tokens.clone(), Says::Introduce(clause.subject.clone()));
+            self.are_there(clause.subject.clone());
         }
         // A reason for which nobody does anything yet is one for what comes.
         if clause.acts.is_empty()
             && let Some(reason) = when.first()
         {
-            self.say(clause.tokens.clone(), Says::Then(reason.clone()));
+            self.say(used.first().cloned().unwrap_or(0..0), Says::Then(reason.clone()));
         }
-        let whole = Whole { clause, when: &when, until: &until, turned };
         for act in &clause.acts {
             let Some(frame) = self.lexicon.frames.get(act.row) else { continue };
             self.act(act, frame, &whole, robot);
         }
-        if !clause.also.is_empty() {
-            self.say(clause.tokens.clone(), Says::Introduce(clause.also.clone()));
-        }
-        if let Some(mps) = clause.pace_mps.filter(|_| !robot && !clause.subject.is_empty()) {
-            self.say(clause.tokens.clone(), Says::Pace(clause.subject.clone(), mps));
+        self.are_there(clause.also.clone());
+        if let Some(pace) = clause.pace_mps {
+            let tokens = pace.from..pace.to;
+            if robot {
+                self.say(tokens, Says::Background(Background::Errand));
+            } else if !clause.subject.is_empty() {
+                self.say(tokens, Says::Pace(clause.subject.clone(), pace.value));
+            }
         }
         self.rest(clause);
+        self.with_the_rest(clause, start, &when, used);
+    }
+
+    /// Says what goes with what was said of a clause since a statement: whose it is, when, how long. What nothing was made of
+    /// stays without a statement, and is not read.
+    fn with_the_rest(
+        &mut self,
+        clause: &Clause,
+        start: usize,
+        when: &[Reason<Named>],
+        used: Vec<Range<usize>>,
+    ) {
+        let own = self.found.get(start..).unwrap_or_default();
+        let any = own.iter().any(|own| !matches!(own.says, Says::NotRead));
+        let done = own.iter().any(|own| matches!(own.says, Says::Do(_)));
+        let then = own.iter().any(|own| matches!(own.says, Says::Then(_)));
+        // Whoever is met is met as the robot comes by: such a reason holds of where somebody comes from as well.
+        let met = when.iter().all(|reason| !matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed));
+        if any {
+            self.nouns_go(&clause.subject);
+            self.nouns_go(clause.agent.as_slice());
+        }
+        if done || then || met {
+            for tokens in used {
+                self.goes(tokens);
+            }
+        }
+        let amounts = [clause.lasts_s.filter(|_| done), clause.after_s.filter(|_| done), clause.within_m.filter(|_| done || then)];
+        for amount in amounts.into_iter().flatten() {
+            self.goes(amount.from..amount.to);
+        }
+    }
+
+    /// When a clause begins and ends, by its conditions.
+    fn times(&mut self, clause: &Clause) -> Times {
+        let mut times = Times::default();
+        let stays = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.denied.is_some());
+        let denied = clause.acts.iter().any(|act| act.not && !stays(act));
+        for condition in &clause.conditions {
+            let found = self.reason(condition, &clause.subject);
+            self.introduce(&condition.clause);
+            if found.is_some() {
+                let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
+                self.places(&condition.clause, robot);
+                self.rest(&condition.clause);
+            }
+            let (reason, tokens) = found.map_or((None, Vec::new()), |(reason, tokens)| (Some(reason), tokens));
+            // Whoever is waited for makes the sign.
+            if let Some(Reason { who: Some(who), cue: Cue::Says, sign, .. }) = &reason {
+                let deed = Deed { says: *sign, ..Deed::of(who.clone(), Act::Sign) };
+                self.say(condition.clause.tokens.clone(), Says::Do(deed));
+            }
+            match (reason, condition.tie) {
+                (Some(reason), Tie::When | Tie::While | Tie::After) => times.when.push(reason),
+                // `does not move until`: moves then.
+                (Some(reason), Tie::Until | Tie::Before | Tie::Unless) if denied => {
+                    times.when.push(reason);
+                    times.turned = true;
+                }
+                // `blocks it unless it asks` is done until then.
+                (Some(reason), Tie::Until | Tie::Unless) => times.until.push(reason),
+                (Some(_), Tie::Before) | (None, _) => {
+                    self.beside(condition);
+                    continue;
+                }
+            }
+            times.used.extend(tokens);
+        }
+        times
     }
 
     /// Whoever is named in a condition is there.
     fn introduce(&mut self, clause: &Clause) {
         let objects = clause.acts.iter().flat_map(|act| act.object.iter().chain(&act.owner));
         let named = objects.chain(&clause.subject).filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)));
-        let named: Vec<Noun> = named.cloned().collect();
-        if !named.is_empty() {
-            self.say(clause.tokens.clone(), Says::Introduce(named));
-        }
+        self.are_there(named.cloned().collect());
         let tells = clause.acts.split_last().map_or(&[][..], |(_, before)| before);
         let robot = clause.subject.iter().any(Noun::may_be_robot);
         for act in tells.iter().filter(|act| !robot && !act.not) {
@@ -324,7 +382,7 @@ impl Maker<'_> {
             let deed = Deed { whom, ..whole.deed(who, does, act, frame) };
             self.say(tokens, Says::Do(deed));
         } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
-            let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m };
+            let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m.map(|m| m.value) };
             self.say(tokens.clone(), Says::Introduce(who));
             self.say(tokens, Says::Then(reason));
         } else if frame.asks {
@@ -376,6 +434,9 @@ impl Maker<'_> {
             self.say(tokens, Says::NotRead);
             return;
         }
+        if cue.is_none() && person.is_none() {
+            self.say(tokens.clone(), Says::Background(Background::Errand));
+        }
         match (frame.robot_relate, person) {
             (Some(relation), Some(person)) if !act.not => {
                 self.say(tokens.clone(), Says::Relate(person, Some(relation), None))
@@ -384,35 +445,44 @@ impl Maker<'_> {
             (_, None) => {}
         }
         if let Some(cue) = cue {
-            let amount = whole.clause.within_m.filter(|_| cue == Cue::Near);
+            let amount = whole.clause.within_m.filter(|_| cue == Cue::Near).map(|m| m.value);
             self.say(tokens, Says::Then(Reason { who: None, cue, sign: None, amount }));
         }
     }
 
-    /// What a condition waits for.
-    fn reason(&self, condition: &Condition, subject: &[Noun]) -> Option<Reason<Named>> {
+    /// What a condition waits for, and the tokens that say it.
+    fn reason(&self, condition: &Condition, subject: &[Noun]) -> Option<(Reason<Named>, Vec<Range<usize>>)> {
         let clause = &condition.clause;
-        let none = Reason { who: None, cue: Cue::Near, sign: None, amount: clause.within_m };
+        let none = Reason { who: None, cue: Cue::Near, sign: None, amount: clause.within_m.map(|m| m.value) };
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         let own = clause.subject.is_empty() || clause.subject == subject;
+        let mut tokens: Vec<Range<usize>> =
+            clause.subject.iter().chain(&clause.agent).map(|noun| noun.tokens.clone()).collect();
+        tokens.extend(clause.within_m.map(|m| m.from..m.to));
         // Of several acts the last is waited for: those before it tell who.
         for act in clause.acts.iter().rev() {
             let frame = self.lexicon.frames.get(act.row)?;
             let by_robot = if act.passive { clause.agent.as_ref().is_none_or(Noun::may_be_robot) } else { robot };
+            tokens.push(act.tokens.clone());
             if frame.asks || act.sign.is_some() {
                 let who = if by_robot || own { None } else { Some(clause.subject.clone()) };
-                return Some(Reason { who, cue: Cue::Says, sign: act.sign, ..none });
+                return Some((Reason { who, cue: Cue::Says, sign: act.sign, ..none }, tokens));
             }
             let about = act.object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_)));
             let cue = if by_robot { frame.robot_cue } else { frame.cue.filter(|_| about) };
             if let Some(cue) = cue {
-                return Some(Reason { cue, ..none });
+                return Some((Reason { cue, ..none }, tokens));
+            }
+            if !frame.plain {
+                tokens.pop();
             }
         }
-        if let Some(secs) = clause.lasts_s.or(clause.after_s).filter(|_| clause.acts.is_empty()) {
-            return Some(Reason { cue: Cue::After, amount: Some(secs), ..none });
+        let alone = clause.acts.is_empty();
+        if let Some(secs) = clause.lasts_s.or(clause.after_s).filter(|_| alone) {
+            tokens.push(secs.from..secs.to);
+            return Some((Reason { cue: Cue::After, amount: Some(secs.value), ..none }, tokens));
         }
-        (clause.within_m.is_some() && clause.acts.is_empty()).then_some(none)
+        (clause.within_m.is_some() && alone).then_some((none, tokens))
     }
 
     fn places(&mut self, clause: &Clause, robot: bool) {
@@ -465,6 +535,15 @@ impl Maker<'_> {
     }
 }
 
+/// When something begins and ends, and the tokens that say so.
+#[derive(Default)]
+struct Times {
+    when: Vec<Reason<Named>>,
+    until: Vec<Reason<Named>>,
+    turned: bool,
+    used: Vec<Range<usize>>,
+}
+
 /// A clause with what its conditions came to.
 struct Whole<'a> {
     clause: &'a Clause,
@@ -475,23 +554,29 @@ struct Whole<'a> {
 }
 
 impl Whole<'_> {
+    /// `the second does`: what was asked for, or done, before.
+    fn answer(&self, who: Named, does: bool) -> Deed<Named> {
+        let (when, until) = (self.when.to_vec(), self.until.to_vec());
+        Deed { not: !does, when, until, obeys: true, ..Deed::of(who, Act::Navigate) }
+    }
+
     fn deed(&self, who: Named, act: Act, said: &Predicate, frame: &Frame) -> Deed<Named> {
         let clause = self.clause;
         let mut when = self.when.to_vec();
-        if let Some(m) = clause.within_m {
+        if let Some(m) = clause.within_m.map(|m| m.value) {
             match when.iter_mut().find(|reason| matches!(reason.cue, Cue::Near | Cue::Visible | Cue::Blocking)) {
                 Some(reason) => reason.amount = reason.amount.or(Some(m)),
                 None => when.push(Reason { who: None, cue: Cue::Near, sign: None, amount: Some(m) }),
             }
         }
-        if let Some(secs) = clause.after_s {
+        if let Some(secs) = clause.after_s.map(|secs| secs.value) {
             when.push(Reason { who: None, cue: Cue::After, sign: None, amount: Some(secs) });
         }
         let none = clause.subject.iter().all(|noun| noun.pick == Pick::None) && !clause.subject.is_empty();
         let not = (said.not || none) && !self.turned && (frame.denied.is_none() || none);
         let whom = None;
         let until = self.until.to_vec();
-        Deed { who, act, whom, not, when, until, for_s: clause.lasts_s, says: said.sign, obeys: frame.obeys }
+        Deed { who, act, whom, not, when, until, for_s: clause.lasts_s.map(|secs| secs.value), says: said.sign, obeys: frame.obeys }
     }
 }
 

@@ -99,6 +99,7 @@ pub(crate) fn story(told: &Told) -> Story {
             | Says::Then(_)
             | Says::Background(_)
             | Says::NotPlayed(_)
+            | Says::Goes
             | Says::NotRead => {}
         }
     }
@@ -158,6 +159,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::RobotGoal(_)
             | Says::Background(_)
             | Says::NotPlayed(_)
+            | Says::Goes
             | Says::NotRead => {}
         }
     }

@@ -95,6 +95,33 @@ impl Sorts {
         Self(self.0 | other.0)
     }
 
+    /// Whether a word of these sorts says nothing of its own.
+    pub(crate) fn say_nothing(self) -> bool {
+        const SILENT: [Sort; 20] = [
+            Sort::Fill,
+            Sort::Empty,
+            Sort::Be,
+            Sort::Do,
+            Sort::Have,
+            Sort::Modal,
+            Sort::Definite,
+            Sort::Indefinite,
+            Sort::To,
+            Sort::Of,
+            Sort::By,
+            Sort::At,
+            Sort::From,
+            Sort::Then,
+            Sort::Who,
+            Sort::And,
+            Sort::While,
+            Sort::Later,
+            Sort::After,
+            Sort::Before,
+        ];
+        SILENT.iter().any(|sort| self.has(*sort))
+    }
+
     pub(crate) const fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -161,6 +188,11 @@ impl Token {
     /// Whether it is a word or number.
     pub(crate) const fn is_said(&self) -> bool {
         !matches!(self.kind, Kind::Mark(_))
+    }
+
+    /// Whether a word says nothing of its own.
+    pub(crate) fn says_nothing(&self) -> bool {
+        self.kind == Kind::Word && (self.spelled == crate::lex::OWNS || self.sorts.say_nothing())
     }
 
     pub(crate) const fn number(&self) -> Option<f64> {
