@@ -60,8 +60,8 @@ pub(crate) struct At {
     pub(crate) class: Option<PlaceClass>,
     pub(crate) to: bool,
     pub(crate) from: bool,
-    /// Its first token.
-    pub(crate) token: usize,
+    /// Its tokens: the first, and the one behind it.
+    pub(crate) tokens: (usize, usize),
 }
 
 /// An amount with the tokens that say it.
@@ -97,6 +97,8 @@ pub(crate) struct Clause {
     pub(crate) pace_mps: Option<Measure>,
     pub(crate) places: Vec<At>,
     pub(crate) conditions: Vec<Condition>,
+    /// Tokens of words that deny: `not`, `refuses to`.
+    pub(crate) denials: Vec<Range<usize>>,
     /// Tokens of which nothing was made.
     pub(crate) left: Vec<usize>,
     /// Tokens that tell how somebody looks, or what they have with them.
@@ -121,6 +123,7 @@ impl Clause {
             pace_mps: None,
             places: Vec::new(),
             conditions: Vec::new(),
+            denials: Vec::new(),
             left: Vec::new(),
             looks: Vec::new(),
             tokens: at..at,

@@ -18,6 +18,8 @@ pub type People = Vec<usize>;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Told {
     pub(crate) roles: Vec<String>,
+    /// Those of whom is spoken in general, without a number: `people step in front of it`.
+    pub(crate) vague: People,
     pub(crate) statements: Vec<Statement<People>>,
 }
 
@@ -41,12 +43,13 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
             told.push(Statement { partly: *partly, tokens: tokens.clone(), first: *first, tells: *tells, says });
         }
     }
-    Told { roles: cast.roles, statements: told }
+    Told { roles: cast.roles, vague: cast.vague, statements: told }
 }
 
 #[derive(Default)]
 struct Cast {
     roles: Vec<String>,
+    vague: People,
     /// Who was named last.
     last: People,
     /// Who was named before them.
@@ -130,11 +133,16 @@ impl Cast {
     }
 
     fn reason(&mut self, reason: &Reason<Named>) -> Reason<People> {
-        let who = reason.who.as_ref().map(|who| self.people(who));
-        if reason.cue == Cue::Says && reason.sign.is_some() {
-            self.asked = reason.sign;
+        let mut who = reason.who.as_ref().map(|who| self.people(who));
+        let mut sign = reason.sign;
+        if reason.cue == Cue::Says && sign.is_some() {
+            self.asked = sign;
+        } else if reason.cue == Cue::Says {
+            // `when it has asked`, `on hearing that`: the sign that was made last.
+            sign = self.asked;
+            who = who.or_else(|| self.signed.as_ref().map(|(signer, _)| signer.clone()));
         }
-        Reason { who, cue: reason.cue, sign: reason.sign, amount: reason.amount }
+        Reason { who, cue: reason.cue, sign, amount: reason.amount }
     }
 
     fn deed(&mut self, deed: &Deed<Named>) -> Deed<People> {
@@ -293,6 +301,13 @@ impl Cast {
         found.into_iter().collect()
     }
 
+    /// Whoever was named last and is known to be a woman, or a man, as a word says; else the last of whom that is not known.
+    fn one_like(&self, female: Option<bool>) -> People {
+        let all = || self.last.iter().copied().chain(self.everybody().into_iter().rev());
+        let known = all().find(|person| female.is_some() && self.female.get(person).copied() == female);
+        known.or_else(|| all().find(|person| !self.female.contains_key(person))).into_iter().collect()
+    }
+
     /// `the first`, `two of them`, `the others`, `both`.
     fn bare(&mut self, noun: &Noun) -> People {
         let base = match &noun.of {
@@ -399,6 +414,16 @@ impl Cast {
             Pick::The | Pick::All if known.is_empty() && noun.several && self.set.len() >= SEVERAL => {
                 Some(self.set.clone())
             }
+            // `his colleague`, of two: the other one.
+            Pick::The if known.is_empty() && noun.mate && !noun.several && self.set.len() == SEVERAL => {
+                let other = self.set.iter().copied().find(|person| !self.last.contains(person));
+                other.map(|person| vec![person])
+            }
+            // `the boy` is her son.
+            Pick::The if known.is_empty() && noun.by_looks && !noun.several && noun.ordinal.is_none() => {
+                let found = self.one_like(noun.female);
+                (!found.is_empty()).then_some(found)
+            }
             _ if known.is_empty() => None,
             Pick::The | Pick::Plain if noun.ordinal.is_none() && noun.count.is_none() && !noun.several => {
                 let recent = self.last.iter().rev().find(|person| known.contains(person)).copied();
@@ -454,11 +479,16 @@ impl Cast {
     fn numbered(&self, noun: &Noun) -> Option<usize> {
         let number = usize::try_from(noun.ordinal?).ok()?;
         let role = noun.beside.as_deref();
-        let fits = |own: &String| role.map_or_else(|| ANYBODY.contains(&own.as_str()), |role| own == role);
+        // `w2` of two workers.
+        let initial = if let Head::Name(name) = &noun.head { name.chars().next() } else { None };
+        let label = |own: &String| initial.is_some() && own.chars().next() == initial && role.is_none();
+        let fits = |own: &String| {
+            role.map_or_else(|| ANYBODY.contains(&own.as_str()) || label(own), |role| own == role)
+        };
         let all = self.everybody().into_iter().filter(|person| self.roles.get(*person).is_some_and(fits));
         let all: People = all
             .filter(|person| {
-                !self.names.iter().any(|(name, named)| named == person && !name.ends_with(char::is_numeric))
+                !self.names.iter().any(|(name, named)| named == person && !is_label(name))
             })
             .collect();
         if all.len() > 1 { all.get(number.checked_sub(1)?).copied() } else { None }
@@ -475,6 +505,9 @@ impl Cast {
         let count = if noun.ordinal.is_some() && noun.count.is_none() { 1 } else { count };
         self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
         let people: People = (first..first + count).collect();
+        if noun.generic && noun.several && noun.count.is_none() && noun.pick == Pick::Plain {
+            self.vague.extend(&people);
+        }
         if count > 1 {
             self.fresh.clone_from(&people);
         }
@@ -483,6 +516,12 @@ impl Cast {
         }
         people
     }
+}
+
+/// Whether a name is a number or letter, perhaps behind a role: `w2`, `loader b`.
+fn is_label(name: &str) -> bool {
+    let last = name.rsplit(' ').next().unwrap_or(name);
+    last.len() == 1 || last.ends_with(char::is_numeric)
 }
 
 /// The sign by which somebody is asked for an act.

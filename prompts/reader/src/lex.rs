@@ -204,6 +204,7 @@ fn swapped_or_lost(known: &str, text: &str) -> bool {
         letters.dedup();
         letters
     };
-    let lost = known.len() == text.len() + 1 && text.len() > CORRECTED_FROM;
+    // `lecture` is no `lecturer`.
+    let lost = known.len() == text.len() + 1 && text.len() > CORRECTED_FROM && !known.starts_with(text);
     sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost
 }

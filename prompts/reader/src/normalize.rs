@@ -99,13 +99,15 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
             .filter(|(_, row)| !row.first || at == first && token.bent == Bent::Base);
         if let Some((end, row)) = row {
             let end = match row.extent {
-                Extent::Words => end,
+                Extent::Words | Extent::Lead => end,
                 Extent::Clause => {
                     ends(&tokens, end, |token| matches!(token.kind, Kind::Mark(mark) if mark != Mark::Quote))
                 }
                 Extent::Sentence => ends(&tokens, end, |token| token.is_mark(Mark::Stop)),
             };
-            let from = if row.extent == Extent::Sentence {
+            let tells = |token: &Token| token.is(Sort::Robot) || lexicon.place_patterns.beginning(&token.lemma).next().is_some();
+            let leads = row.extent == Extent::Lead && !scene.tokens.iter().skip(kept).any(tells);
+            let from = if row.extent == Extent::Sentence || leads {
                 scene.tokens.truncate(kept);
                 first
             } else {

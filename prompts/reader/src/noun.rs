@@ -69,6 +69,10 @@ pub(crate) struct Noun {
     pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
     pub(crate) generic: bool,
+    /// Whether the role says how somebody stands to others: `colleague`.
+    pub(crate) mate: bool,
+    /// Whether the role says no more than can be seen of anybody: `boy`.
+    pub(crate) by_looks: bool,
     /// Words before the role, in their base form.
     pub(crate) modifiers: Vec<String>,
     /// But for whom: `all but the last`.
@@ -94,6 +98,8 @@ impl Noun {
             nominative: false,
             female: None,
             generic: false,
+            mate: false,
+            by_looks: false,
             modifiers: Vec::new(),
             except: None,
             of: None,

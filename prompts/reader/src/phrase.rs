@@ -20,11 +20,13 @@ struct Reader<'a> {
     tokens: &'a [Token],
     lexicon: &'a Lexicon,
     at: usize,
+    /// Whether what stands beside a name is being read.
+    deep: bool,
 }
 
 /// The noun phrase that begins at a token.
 pub(crate) fn noun(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<Noun> {
-    let mut reader = Reader { tokens, lexicon, at };
+    let mut reader = Reader { tokens, lexicon, at, deep: false };
     let mut noun = reader.noun()?;
     noun.tokens = at..reader.at;
     Some(noun)
@@ -148,12 +150,14 @@ impl Reader<'_> {
         }
         // Where a sentence begins, every word has a capital: a name is followed by a verb, or by a mark.
         let begins = at == 0 || self.tokens.get(at - 1).is_some_and(|before| !before.is_said());
+        let only = crate::token::Sorts::default().with(Sort::Fill);
         let goes_on = |next: &Token| {
             let sorts = [Sort::Be, Sort::Do, Sort::Have, Sort::Modal, Sort::And, Sort::Who];
             letter
                 || digit
                 || sorts.iter().any(|sort| next.is(*sort))
                 || next.is(Sort::Verb) && next.bent == Bent::S
+                || next.sorts == only
                 || next.is_mark(Mark::Comma)
                 || next.is_mark(Mark::Open)
                 || next.spelled == crate::lex::OWNS
@@ -171,7 +175,41 @@ impl Reader<'_> {
         };
         noun.beside = role;
         self.at = at + 1;
+        self.apposition(&mut noun);
         Some(noun)
+    }
+
+    /// `Maria, a young nurse, …`: what somebody is, behind their name.
+    fn apposition(&mut self, noun: &mut Noun) {
+        let back = self.at;
+        let opens = self.peek().is_some_and(|token| token.is_mark(Mark::Comma) || token.is_mark(Mark::Open));
+        let article = |token: &Token| {
+            token.is(Sort::Indefinite) || token.is(Sort::Definite) && !token.is(Sort::Who) || token.is(Sort::Possessive)
+        };
+        if !opens || !self.tokens.get(self.at + 1).is_some_and(article) || self.deep {
+            return;
+        }
+        self.at += 1;
+        self.deep = true;
+        let role = self.noun();
+        self.deep = false;
+        // Not of a list: `Maria, a nurse and a guest`, `Maria, a nurse, a guest and the robot`.
+        let closes = self.peek().is_none_or(|token| {
+            token.is_mark(Mark::Close) || token.is_mark(Mark::Comma) || token.is_mark(Mark::Dash)
+        });
+        let next = self.tokens.get(self.at + 1);
+        let list = next.is_some_and(article) || next.is_some_and(|next| next.is(Sort::And)) && {
+            !self.tokens.get(self.at + 2).is_some_and(|name| name.capital)
+        };
+        match role {
+            Some(Noun { head: Head::Role(role), several: false, count: None | Some(1), generic: false, .. })
+                if closes && !list =>
+            {
+                noun.beside = Some(role);
+                self.at += usize::from(self.peek().is_some());
+            }
+            Some(_) | None => self.at = back,
+        }
     }
 
     /// Whether something can be somebody's: a thing, a part of the body, a way.
@@ -310,7 +348,7 @@ impl Reader<'_> {
                 return true;
             }
             if (token.is(Sort::Role) || token.is(Sort::People))
-                && token.bent != Bent::Ing
+                && !matches!(token.bent, Bent::Ing | Bent::Ed)
                 && !next.is_some_and(compound)
             {
                 noun.head = Head::Role(token.lemma.clone());
@@ -325,6 +363,8 @@ impl Reader<'_> {
                     .map(|token| token.lemma.clone())
                     .collect();
                 noun.generic = token.is(Sort::People);
+                noun.mate = token.is(Sort::Mate);
+                noun.by_looks = token.is(Sort::Seen);
                 noun.female = gender(token);
                 self.at += 1;
                 // `nurse Agnes`
@@ -465,6 +505,15 @@ impl Reader<'_> {
         self.of(&mut noun);
         // `at 4`, `around ten`: a number alone is nobody, unless they do something.
         let alone = noun.pick == Pick::Some && noun.ordinal.is_none();
+        // `at ten`, `a quarter to eight`: a time, or an amount.
+        let before = noun.tokens.start.checked_sub(1).and_then(|at| self.tokens.get(at));
+        let told_when = |token: &Token| {
+            [Sort::At, Sort::To, Sort::For, Sort::Until, Sort::From].iter().any(|sort| token.is(*sort))
+                || token.lemma == "half"
+        };
+        if alone && noun.of.is_none() && noun.pick == Pick::Some && before.is_some_and(told_when) {
+            return None;
+        }
         let figure =
             self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|last| last.number().is_some());
         let acts = |token: &Token| {

@@ -11,7 +11,12 @@ use socrates_model::{Gesture, PlaceClass};
 impl Parser<'_> {
     /// Takes the row that matches here, where one does.
     pub(crate) fn framed(&mut self, clause: &mut Clause) -> bool {
-        let found = longest(self.chunks, self.at, &self.lexicon.frame_patterns);
+        let patterns = &self.lexicon.frame_patterns;
+        // `does not move out of the way` denies that, and is no `not move out`.
+        let denies = self.peek().is_some_and(|chunk| chunk.word(Sort::Not));
+        let longer =
+            |found: &Found| longest(self.chunks, self.at + 1, patterns).is_some_and(|inner| inner.end > found.end);
+        let found = longest(self.chunks, self.at, patterns).filter(|found| !denies || !longer(found));
         let matches = found.is_some();
         if let Some(found) = found {
             self.predicate(found, clause);
@@ -58,7 +63,8 @@ impl Parser<'_> {
         let to =
             before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into) || before.word(Sort::For));
         let from = before.is_some_and(|before| before.word(Sort::From));
-        At { class, to, from, token: self.chunks.get(at).map_or(0, |chunk| chunk.tokens.start) }
+        let tokens = self.chunks.get(at).map_or((0, 0), |chunk| (chunk.tokens.start, chunk.tokens.end));
+        At { class, to, from, tokens }
     }
 
     pub(crate) fn word(&mut self, clause: &mut Clause) {
@@ -81,11 +87,13 @@ impl Parser<'_> {
         }
         if chunk.word(Sort::Not) && obeys {
             // `he does not`
+            clause.denials.push(chunk.tokens.clone());
             if let Some(last) = clause.acts.last_mut() {
                 last.not = !last.not;
             }
         } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
             clause.not = true;
+            clause.denials.push(chunk.tokens.clone());
             clause.does = clause.does.map(|_| false);
         } else if chunk.word(Sort::Slow) {
             clause.pace_mps = Some(pace(SLOW_MPS, chunk));
@@ -153,6 +161,7 @@ impl Parser<'_> {
         }
         if frame.is_some_and(|frame| frame.denies) {
             clause.not = !clause.not;
+            clause.denials.push(start..self.token());
             return;
         }
         let tokens = start..self.token();

@@ -202,6 +202,8 @@ pub(crate) enum Extent {
     Clause,
     /// The sentence in which it stands.
     Sentence,
+    /// The sentence up to its end, unless that tells of the robot or a place: `for my comparison I need`.
+    Lead,
 }
 
 /// A row of `scopes.toml`: words that ask for nothing.

@@ -278,7 +278,11 @@ impl Parser<'_> {
         } else {
             // `robot 3 m away: stops`: not the robot, of which the reason tells.
             let robot = !self.subject.is_empty() && self.subject.iter().all(|noun| noun.head == Head::Robot);
-            let answers = robot && matches!(clause.join, Join::Colon | Join::Then) && !self.person.is_empty();
+            // But what is said after its name it says: `robot: "excuse me"`.
+            let says = clause.acts.first().is_some_and(|act| {
+                act.sign.is_some() && act.tokens.start <= clause.tokens.start + 1 && clause.join == Join::Colon
+            });
+            let answers = robot && !says && matches!(clause.join, Join::Colon | Join::Then) && !self.person.is_empty();
             clause.subject.clone_from(if answers { &self.person } else { &self.subject });
         }
         if clause.subject.iter().any(|noun| !noun.may_be_robot()) && !inner {
@@ -302,7 +306,12 @@ impl Parser<'_> {
     pub(crate) fn relative(&mut self, clause: &mut Clause) -> bool {
         let who = self.peek().filter(|chunk| chunk.word(Sort::Who)).map(|chunk| chunk.tokens.clone());
         let Some(tokens) = who.filter(|_| self.at > 0) else { return false };
-        clause.subject.push(Noun::new(Head::Who, tokens));
+        // `the robot, which asks them to wait`
+        let before = self.chunks.get(..self.at).unwrap_or_default();
+        let noun = before.iter().rev().find(|chunk| !chunk.is_mark(Mark::Comma)).and_then(Chunk::noun);
+        let which = self.peek().is_some_and(|chunk| chunk.word(Sort::Which));
+        let robot = noun.filter(|noun| noun.head == Head::Robot && which).map(|_| Head::Robot);
+        clause.subject.push(Noun::new(robot.unwrap_or(Head::Who), tokens));
         self.at += 1;
         true
     }

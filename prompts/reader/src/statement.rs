@@ -186,12 +186,6 @@ impl Maker<'_> {
         } else if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
             self.are_there(clause.subject.clone());
         }
-        // A reason for which nobody does anything yet is one for what comes.
-        if clause.acts.is_empty()
-            && let Some(reason) = when.first()
-        {
-            self.say(used.first().cloned().unwrap_or(0..0), Says::Then(reason.clone()));
-        }
         for act in &clause.acts {
             let Some(frame) = self.lexicon.frames.get(act.row) else { continue };
             self.act(act, frame, &whole, robot);
@@ -206,6 +200,11 @@ impl Maker<'_> {
             }
         }
         self.rest(clause);
+        // A reason for which nobody does anything yet is one for what comes.
+        let done = self.found.get(start..).unwrap_or_default().iter().any(|own| matches!(own.says, Says::Do(_)));
+        if let Some(reason) = when.first().or(until.first()).filter(|_| !done) {
+            self.say(used.first().cloned().unwrap_or(0..0), Says::Then(reason.clone()));
+        }
         self.with_the_rest(clause, start, &when, used);
     }
 
@@ -224,6 +223,12 @@ impl Maker<'_> {
         let then = own.iter().any(|own| matches!(own.says, Says::Then(_)));
         // Whoever is met is met as the robot comes by: such a reason holds of where somebody comes from as well.
         let met = when.iter().all(|reason| !matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed));
+        let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
+        if done || clause.acts.iter().any(|act| act.not && plain(act)) {
+            for tokens in &clause.denials {
+                self.goes(tokens.clone());
+            }
+        }
         if any {
             self.nouns_go(&clause.subject);
             self.nouns_go(clause.agent.as_slice());
@@ -368,12 +373,15 @@ impl Maker<'_> {
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
         }
+        // Whoever crosses after some time, or once they may, sets off then.
+        let sets_off = |reason: &Reason<Named>| matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed | Cue::Stopped);
+        let sets_off = relation.is_some_and(|relation| !relation.stands()) && whole.when.iter().any(sets_off);
         let does = frame
             .denied
             .filter(|_| act.not)
             .or(frame.act)
             .or_else(|| act.sign.map(|_| Act::Sign))
-            .or_else(|| frame.obeys.then_some(Act::Navigate));
+            .or_else(|| (frame.obeys || sets_off).then_some(Act::Navigate));
         if let Some(does) = does {
             let somebody =
                 |noun: &&Noun| matches!(noun.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::They);
@@ -459,6 +467,7 @@ impl Maker<'_> {
         let mut tokens: Vec<Range<usize>> =
             clause.subject.iter().chain(&clause.agent).map(|noun| noun.tokens.clone()).collect();
         tokens.extend(clause.within_m.map(|m| m.from..m.to));
+        tokens.push(clause.tokens.start..clause.tokens.start + 1);
         // Of several acts the last is waited for: those before it tell who.
         for act in clause.acts.iter().rev() {
             let frame = self.lexicon.frames.get(act.row)?;
@@ -478,6 +487,10 @@ impl Maker<'_> {
             }
         }
         let alone = clause.acts.is_empty();
+        // `when it does`: what was asked for, or said, just before.
+        if clause.does == Some(true) && alone && robot {
+            return Some((Reason { cue: Cue::Says, ..none }, tokens));
+        }
         if let Some(secs) = clause.lasts_s.or(clause.after_s).filter(|_| alone) {
             tokens.push(secs.from..secs.to);
             return Some((Reason { cue: Cue::After, amount: Some(secs.value), ..none }, tokens));
@@ -509,7 +522,7 @@ impl Maker<'_> {
             () if clause.acts.is_empty() => 2,
             () => 3,
         };
-        for (number, At { class, to, from, token }) in clause.places.iter().enumerate() {
+        for (number, At { class, to, from, tokens }) in clause.places.iter().enumerate() {
             let part = part.filter(|_| number == 0);
             let says = match class {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
@@ -519,7 +532,7 @@ impl Maker<'_> {
                 Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),
                 Some(class) => Says::Happens(*class, if *to { 1 } else { rank }),
             };
-            self.say(*token..token + 1, says);
+            self.say(tokens.0..tokens.1, says);
         }
     }
 

@@ -89,6 +89,7 @@ pub(crate) fn story(told: &Told) -> Story {
             Says::Pace(who, mps) => story.each(who, |person| person.pace_mps = Some(*mps)),
             Says::Do(deed) => story.does(deed),
             Says::RobotSays(Some(gesture), _) => story.robot_sign(*gesture),
+            Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => story.robot_sign(*gesture),
             Says::Happens(class, rank) if *rank > ranked => (story.place, ranked) = (Some(*class), *rank),
             Says::RobotStart(class) => story.robot_start = Some(*class),
             Says::RobotGoal(class) => story.robot_goal = Some(*class),
@@ -161,6 +162,14 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::NotPlayed(_)
             | Says::Goes
             | Says::NotRead => {}
+        }
+    }
+    // Those of whom is spoken in general are nobody where others are named.
+    if sure.iter().enumerate().any(|(person, sure)| *sure && !told.vague.contains(&person)) {
+        for person in &told.vague {
+            if let Some(own) = sure.get_mut(*person) {
+                *own = false;
+            }
         }
     }
     let unsure: Vec<usize> = (0..sure.len()).filter(|person| sure.get(*person) == Some(&false)).collect();

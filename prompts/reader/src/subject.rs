@@ -34,6 +34,7 @@ impl Parser<'_> {
             // `they all`, `does neither`
             if noun.pick == Pick::None {
                 clause.not = true;
+                clause.denials.push(noun.tokens.clone());
                 clause.does = clause.does.map(|_| false);
             }
         } else if by && clause.acts.iter().any(|act| act.passive) {

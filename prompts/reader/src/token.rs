@@ -23,6 +23,8 @@ pub(crate) enum Sort {
     Other,
     Former,
     Who,
+    /// Never a person: `which`.
+    Which,
     // Words that join.
     Be,
     Do,
@@ -68,6 +70,10 @@ pub(crate) enum Sort {
     Role,
     Group,
     Label,
+    /// A role towards others: `colleague`.
+    Mate,
+    /// A role that can be seen of anybody: `boy`.
+    Seen,
     Slow,
     Brisk,
     Looks,
@@ -97,7 +103,10 @@ impl Sorts {
 
     /// Whether a word of these sorts says nothing of its own.
     pub(crate) fn say_nothing(self) -> bool {
-        const SILENT: [Sort; 20] = [
+        const SILENT: [Sort; 23] = [
+            Sort::Possessive,
+            Sort::But,
+            Sort::Or,
             Sort::Fill,
             Sort::Empty,
             Sort::Be,
