@@ -399,7 +399,11 @@ fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options:
                 }
                 shown = true;
             }
-            println!("   missing `{fact}`{}", if old { " (old right)" } else { "" });
+            println!(
+                "   {} `{fact}`{}",
+                if right { "right" } else { "missing" },
+                if old { " (old right)" } else { "" }
+            );
         }
     }
     if !aside {

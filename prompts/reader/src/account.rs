@@ -97,6 +97,7 @@ impl Fate {
             | Says::Then(_)
             | Says::Goes
             | Says::Happens(..)
+            | Says::There
             | Says::RobotStart(_)
             | Says::RobotGoal(_) => (Self::Read, 1),
         }
@@ -107,8 +108,11 @@ impl Fate {
 pub(crate) fn account(text: &str, scene: &Scene, clauses: &[Clause], statements: &[Statement<People>]) -> Vec<Piece> {
     let mut pieces = words(scene, clauses, statements);
     let background = scene.background.iter();
-    pieces
-        .extend(background.map(|(at, reason)| Piece { at: at.clone(), clause: None, fate: Fate::Background(*reason) }));
+    pieces.extend(background.map(|(at, reason)| Piece {
+        at: at.clone(),
+        clause: None,
+        fate: Fate::Background(*reason),
+    }));
     pieces.sort_by_key(|piece| (piece.at.start, piece.at.end));
     // Numbers of a list, times of day, a number taken back: left out before anything is read.
     for (start, word) in text.unicode_word_indices() {
@@ -130,8 +134,7 @@ fn words(scene: &Scene, clauses: &[Clause], statements: &[Statement<People>]) ->
         let (fate, rank) = Fate::of(&statement.says);
         let length = statement.tokens.len();
         for own in fates.get_mut(statement.tokens.clone()).unwrap_or_default() {
-            let wins =
-                |(other, own): &(usize, u8)| *other > length || *other == length && *own < rank;
+            let wins = |(other, own): &(usize, u8)| *other > length || *other == length && *own < rank;
             if own.as_ref().is_none_or(|(other, own, _)| wins(&(*other, *own))) {
                 *own = Some((length, rank, fate.clone()));
             }

@@ -107,7 +107,13 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
     if let Some((amount, end)) = amount(tokens, at, lexicon) {
         return (Is::Amount(amount), end);
     }
-    let place = place(tokens, at, lexicon);
+    // `a patient, crossing at the junction` crosses.
+    let before = at.checked_sub(1).and_then(|at| tokens.get(at));
+    let acts = token.bent == Bent::Ing
+        && token.is(Sort::Verb)
+        && before
+            .is_some_and(|before| !before.is(Sort::Definite) && !before.is(Sort::At) && !before.is_mark(Mark::Stop));
+    let place = place(tokens, at, lexicon).filter(|_| !acts);
     if let Some(noun) = noun(tokens, at, lexicon) {
         let end = noun.tokens.end;
         if place.is_none_or(|(_, place_end)| place_end < end) {
@@ -207,7 +213,11 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
     };
     // The longest, and of those that end together the one that begins first: `narrow passage`.
     let found = (at..=start).filter_map(|start| longest(start).map(|(end, row)| (end, std::cmp::Reverse(start), row)));
-    let (mut end, _, row) = found.max_by_key(|(end, start, row)| (*end, *start, std::cmp::Reverse(*row)))?;
+    let (mut end, _, mut row) = found.max_by_key(|(end, start, row)| (*end, *start, std::cmp::Reverse(*row)))?;
+    // `ward corridor`: the last word says what it is.
+    while let Some((next, of)) = longest(end).filter(|_| tokens.get(end).is_some_and(|token| token.bent != Bent::Ing)) {
+        (end, row) = (next, of);
+    }
     // `room 214`, `ward B`.
     let named = |token: &Token| {
         token.number().is_some() || token.spelled.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word

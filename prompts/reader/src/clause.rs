@@ -89,6 +89,10 @@ pub(crate) struct Clause {
     pub(crate) also: Vec<Noun>,
     /// By whom, in the passive.
     pub(crate) agent: Option<Noun>,
+    /// Whether its subjects are a group.
+    pub(crate) group: bool,
+    /// Whether it happens `there`.
+    pub(crate) there: bool,
     /// Whether it says `does`, or `does not`, and not what.
     pub(crate) does: Option<bool>,
     pub(crate) lasts_s: Option<Measure>,
@@ -116,6 +120,8 @@ impl Clause {
             acts: Vec::new(),
             also: Vec::new(),
             agent: None,
+            group: false,
+            there: false,
             does: None,
             lasts_s: None,
             after_s: None,

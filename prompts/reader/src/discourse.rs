@@ -123,6 +123,7 @@ impl Cast {
                 Says::Then(reason)
             }
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
+            Says::There => Says::There,
             Says::RobotStart(class) => Says::RobotStart(*class),
             Says::RobotGoal(class) => Says::RobotGoal(*class),
             Says::Background(reason) => Says::Background(*reason),
@@ -402,6 +403,8 @@ impl Cast {
         let known: People = match () {
             () if anybody && !self.set.is_empty() && noun.several => self.set.clone(),
             () if anybody => self.everybody(),
+            // `the first guy`
+            () if noun.by_looks && noun.ordinal.is_some() && !self.set.is_empty() => self.set.clone(),
             () => self
                 .everybody()
                 .into_iter()
@@ -482,15 +485,11 @@ impl Cast {
         // `w2` of two workers.
         let initial = if let Head::Name(name) = &noun.head { name.chars().next() } else { None };
         let label = |own: &String| initial.is_some() && own.chars().next() == initial && role.is_none();
-        let fits = |own: &String| {
-            role.map_or_else(|| ANYBODY.contains(&own.as_str()) || label(own), |role| own == role)
-        };
+        let fits =
+            |own: &String| role.map_or_else(|| ANYBODY.contains(&own.as_str()) || label(own), |role| own == role);
         let all = self.everybody().into_iter().filter(|person| self.roles.get(*person).is_some_and(fits));
-        let all: People = all
-            .filter(|person| {
-                !self.names.iter().any(|(name, named)| named == person && !is_label(name))
-            })
-            .collect();
+        let all: People =
+            all.filter(|person| !self.names.iter().any(|(name, named)| named == person && !is_label(name))).collect();
         if all.len() > 1 { all.get(number.checked_sub(1)?).copied() } else { None }
     }
 

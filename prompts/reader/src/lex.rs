@@ -27,7 +27,33 @@ pub(crate) fn lex(text: &str, words: &Words) -> Vec<Token> {
             marks(start, piece, text, words, &mut tokens);
         }
     }
-    unnumbered(tokens, words)
+    unnumbered(corrected(tokens, words), words)
+}
+
+/// The tokens with a number that was taken back later: `three visitors sitting there, no, two.`
+fn corrected(mut tokens: Vec<Token>, words: &Words) -> Vec<Token> {
+    let counts = |token: &Token| token.number().is_some() || words.numbers.contains_key(&token.lemma);
+    let mut at = 0;
+    while at < tokens.len() {
+        let is = |at: usize, test: &dyn Fn(&Token) -> bool| tokens.get(at).is_some_and(test);
+        let marks =
+            is(at, &|token| token.is_mark(Mark::Comma) || token.is_mark(Mark::Dash) || token.is_mark(Mark::Stop));
+        let behind = (at + 1..at + 5).find(|next| !is(*next, &|token| token.is(Sort::Regret))).unwrap_or(at + 5);
+        let meant = behind + usize::from(is(behind, &|token| token.is_mark(Mark::Comma)));
+        let alone = tokens.get(meant + 1).is_none_or(|next| !next.is_said());
+        let old = (0..at).rev().find(|old| is(*old, &counts));
+        match old.filter(|_| marks && behind > at + 1 && is(meant, &counts) && alone && meant <= at + 5) {
+            Some(old) if old + 1 < at => {
+                let new = tokens.get(meant).cloned();
+                if let (Some(new), Some(own)) = (new, tokens.get_mut(old)) {
+                    *own = Token { at: own.at.clone(), ..new };
+                }
+                tokens.drain(at..=meant);
+            }
+            Some(_) | None => at += 1,
+        }
+    }
+    tokens
 }
 
 /// The tokens without the numbers of a list: `1. The robot …`.
@@ -206,5 +232,7 @@ fn swapped_or_lost(known: &str, text: &str) -> bool {
     };
     // `lecture` is no `lecturer`.
     let lost = known.len() == text.len() + 1 && text.len() > CORRECTED_FROM && !known.starts_with(text);
-    sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost
+    // `visitior`
+    let more = known.len() + 1 == text.len() && known.len() > CORRECTED_FROM + 1;
+    sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost || more
 }

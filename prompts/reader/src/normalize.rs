@@ -29,11 +29,12 @@ pub(crate) fn normalize(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
 }
 
 /// The end of the longest of some patterns that match tokens from a place on, and its row.
-fn longest(tokens: &[Token], at: usize, patterns: &Patterns) -> Option<(usize, usize)> {
+fn longest(tokens: &[Token], at: usize, patterns: &Patterns, may: impl Fn(usize) -> bool) -> Option<(usize, usize)> {
     let first = tokens.get(at).filter(|token| token.is_said())?;
     patterns
         .beginning(&first.lemma)
         .chain(patterns.beginning(&first.spelled).filter(|_| first.spelled != first.lemma))
+        .filter(|pattern| may(pattern.row))
         .filter_map(|pattern| Some((end_of(tokens, at, pattern)?, pattern.row)))
         .max_by_key(|(end, row)| (*end, std::cmp::Reverse(*row)))
 }
@@ -70,7 +71,7 @@ fn rewritten(tokens: Vec<Token>, lexicon: &Lexicon) -> Vec<Token> {
     let mut out = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while let Some(token) = tokens.get(at) {
-        let found = longest(&tokens, at, &lexicon.rewrite_patterns);
+        let found = longest(&tokens, at, &lexicon.rewrite_patterns, |_| true);
         let Some((end, row)) = found else {
             out.push(token.clone());
             at += 1;
@@ -93,10 +94,11 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
     // Where the sentence begins, in the scene and among the tokens.
     let (mut kept, mut first) = (0, 0);
     while let Some(token) = tokens.get(at) {
-        let row = longest(&tokens, at, &lexicon.scope_patterns)
-            .and_then(|(end, row)| Some((end, lexicon.scopes.get(row)?)))
-            // What is asked of the program has no ending: `gives way` is no request.
-            .filter(|(_, row)| !row.first || at == first && token.bent == Bent::Base);
+        // What is asked of the program has no ending: `gives way` is no request.
+        let begins = at == first && token.bent == Bent::Base;
+        let may = |row: usize| lexicon.scopes.get(row).is_some_and(|row| !row.first || begins);
+        let row = longest(&tokens, at, &lexicon.scope_patterns, may)
+            .and_then(|(end, row)| Some((end, lexicon.scopes.get(row)?)));
         if let Some((end, row)) = row {
             let end = match row.extent {
                 Extent::Words | Extent::Lead => end,
@@ -105,7 +107,9 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
                 }
                 Extent::Sentence => ends(&tokens, end, |token| token.is_mark(Mark::Stop)),
             };
-            let tells = |token: &Token| token.is(Sort::Robot) || lexicon.place_patterns.beginning(&token.lemma).next().is_some();
+            let tells = |token: &Token| {
+                token.is(Sort::Robot) || lexicon.place_patterns.beginning(&token.lemma).next().is_some()
+            };
             let leads = row.extent == Extent::Lead && !scene.tokens.iter().skip(kept).any(tells);
             let from = if row.extent == Extent::Sentence || leads {
                 scene.tokens.truncate(kept);

@@ -194,13 +194,14 @@ impl Reader<'_> {
         let role = self.noun();
         self.deep = false;
         // Not of a list: `Maria, a nurse and a guest`, `Maria, a nurse, a guest and the robot`.
-        let closes = self.peek().is_none_or(|token| {
-            token.is_mark(Mark::Close) || token.is_mark(Mark::Comma) || token.is_mark(Mark::Dash)
-        });
+        let closes = self
+            .peek()
+            .is_none_or(|token| token.is_mark(Mark::Close) || token.is_mark(Mark::Comma) || token.is_mark(Mark::Dash));
         let next = self.tokens.get(self.at + 1);
-        let list = next.is_some_and(article) || next.is_some_and(|next| next.is(Sort::And)) && {
-            !self.tokens.get(self.at + 2).is_some_and(|name| name.capital)
-        };
+        let list = next.is_some_and(article)
+            || next.is_some_and(|next| next.is(Sort::And)) && {
+                !self.tokens.get(self.at + 2).is_some_and(|name| name.capital)
+            };
         match role {
             Some(Noun { head: Head::Role(role), several: false, count: None | Some(1), generic: false, .. })
                 if closes && !list =>
@@ -236,7 +237,8 @@ impl Reader<'_> {
             Sort::Definite,
             Sort::Indefinite,
         ];
-        let acts = token.is(Sort::Verb) && token.bent == Bent::S;
+        let acts = token.is(Sort::Verb) && token.bent == Bent::S
+            || token.is(Sort::Fill) && token.lemma != "own" && !token.is(Sort::Empty) && !token.is(Sort::Verb);
         token.kind == Kind::Word
             && !acts
             && !joins.iter().any(|sort| token.is(*sort))

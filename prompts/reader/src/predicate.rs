@@ -26,8 +26,9 @@ impl Parser<'_> {
 
     pub(crate) fn amount(&mut self, amount: Amount, clause: &mut Clause) {
         let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
-        let after = before.is_some_and(|before| before.word(Sort::After))
-            || self.ahead(1).is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After));
+        // `4 s once it is near` is no `4 s after`.
+        let next = self.ahead(1).filter(|next| next.word(Sort::Later) || next.lemma == "after");
+        let after = before.is_some_and(|before| before.word(Sort::After)) || next.is_some();
         let measure = self.measure(amount, self.at);
         match amount {
             Amount::Distance(_) => clause.within_m = Some(measure),
@@ -82,6 +83,7 @@ impl Parser<'_> {
         let Some(chunk) = self.chunks.get(self.at) else { return };
         let obeys =
             clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
+        clause.there |= chunk.word(Sort::There) && !clause.subject.is_empty();
         if chunk.word(Sort::Do) {
             clause.does = Some(!clause.not);
         }

@@ -322,9 +322,10 @@ impl Parser<'_> {
         match &chunk.is {
             Is::Mark(Mark::Quote) => false,
             Is::Mark(Mark::Comma) => {
-                !(clause.is_bare()
-                    && !clause.subject.is_empty()
-                    && self.ahead(1).is_some_and(|next| next.word(Sort::Verb) && next.bent == Bent::Ing))
+                let doing = |next: &Chunk| next.word(Sort::Verb) && next.bent == Bent::Ing;
+                let fill = self.ahead(1).is_some_and(|next| next.word(Sort::Fill) && !next.word(Sort::And));
+                let next = self.ahead(1 + usize::from(fill));
+                !(clause.is_bare() && !clause.subject.is_empty() && next.is_some_and(doing))
             }
             Is::Mark(_) => true,
             Is::Noun(noun) => {

@@ -47,6 +47,8 @@ pub enum Says<W> {
     Then(Reason<W>),
     /// Where it happens; the number ranks it: people are there (3), it stands alone (2), the robot is there (1).
     Happens(PlaceClass, u8),
+    /// It happens where the robot's way ends, unless another place is told.
+    There,
     /// Where the robot's way begins.
     RobotStart(PlaceClass),
     /// Where it ends.
@@ -185,6 +187,19 @@ impl Maker<'_> {
             self.say(clause.subject.first().map_or(0..0, |noun| noun.tokens.clone()), Says::Do(deed));
         } else if clause.acts.is_empty() && !robot && !clause.subject.is_empty() {
             self.are_there(clause.subject.clone());
+            // Whoever shall not do what was not read: `neither of the two …`
+            for none in clause.subject.iter().filter(|noun| noun.pick == Pick::None) {
+                self.say(none.tokens.clone(), Says::NotRead);
+            }
+        }
+        if clause.group {
+            self.say(
+                clause.subject.first().map_or(0..0, |noun| noun.tokens.clone()),
+                Says::Group(clause.subject.clone()),
+            );
+        }
+        if clause.there {
+            self.say(clause.tokens.start..clause.tokens.start, Says::There);
         }
         for act in &clause.acts {
             let Some(frame) = self.lexicon.frames.get(act.row) else { continue };
@@ -210,13 +225,7 @@ impl Maker<'_> {
 
     /// Says what goes with what was said of a clause since a statement: whose it is, when, how long. What nothing was made of
     /// stays without a statement, and is not read.
-    fn with_the_rest(
-        &mut self,
-        clause: &Clause,
-        start: usize,
-        when: &[Reason<Named>],
-        used: Vec<Range<usize>>,
-    ) {
+    fn with_the_rest(&mut self, clause: &Clause, start: usize, when: &[Reason<Named>], used: Vec<Range<usize>>) {
         let own = self.found.get(start..).unwrap_or_default();
         let any = own.iter().any(|own| !matches!(own.says, Says::NotRead));
         let done = own.iter().any(|own| matches!(own.says, Says::Do(_)));
@@ -238,7 +247,11 @@ impl Maker<'_> {
                 self.goes(tokens);
             }
         }
-        let amounts = [clause.lasts_s.filter(|_| done), clause.after_s.filter(|_| done), clause.within_m.filter(|_| done || then)];
+        let amounts = [
+            clause.lasts_s.filter(|_| done),
+            clause.after_s.filter(|_| done),
+            clause.within_m.filter(|_| done || then),
+        ];
         for amount in amounts.into_iter().flatten() {
             self.goes(amount.from..amount.to);
         }
@@ -374,8 +387,10 @@ impl Maker<'_> {
             self.say(tokens.clone(), Says::Group(who.clone()));
         }
         // Whoever crosses after some time, or once they may, sets off then.
-        let sets_off = |reason: &Reason<Named>| matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed | Cue::Stopped);
-        let sets_off = relation.is_some_and(|relation| !relation.stands()) && whole.when.iter().any(sets_off);
+        let sets_off =
+            |reason: &Reason<Named>| matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed | Cue::Stopped);
+        let walks = relation.is_some_and(|relation| !relation.stands()) || frame.plain && frame.goes && !act.not;
+        let sets_off = walks && whole.when.iter().any(sets_off);
         let does = frame
             .denied
             .filter(|_| act.not)
@@ -589,7 +604,17 @@ impl Whole<'_> {
         let not = (said.not || none) && !self.turned && (frame.denied.is_none() || none);
         let whom = None;
         let until = self.until.to_vec();
-        Deed { who, act, whom, not, when, until, for_s: clause.lasts_s.map(|secs| secs.value), says: said.sign, obeys: frame.obeys }
+        Deed {
+            who,
+            act,
+            whom,
+            not,
+            when,
+            until,
+            for_s: clause.lasts_s.map(|secs| secs.value),
+            says: said.sign,
+            obeys: frame.obeys,
+        }
     }
 }
 

@@ -65,7 +65,7 @@ pub struct Story {
 pub(crate) fn story(told: &Told) -> Story {
     let people = told.roles.iter().map(|role| Person { role: role.clone(), ..Person::default() }).collect();
     let mut story = Story { people, ..Story::default() };
-    let (mut groups, mut ranked) = (0, 0);
+    let (mut groups, mut ranked, mut there) = (0, 0, false);
     for statement in &told.statements {
         match &statement.says {
             Says::Relate(who, relation, side) => story.each(who, |person| {
@@ -91,6 +91,7 @@ pub(crate) fn story(told: &Told) -> Story {
             Says::RobotSays(Some(gesture), _) => story.robot_sign(*gesture),
             Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => story.robot_sign(*gesture),
             Says::Happens(class, rank) if *rank > ranked => (story.place, ranked) = (Some(*class), *rank),
+            Says::There => there = true,
             Says::RobotStart(class) => story.robot_start = Some(*class),
             Says::RobotGoal(class) => story.robot_goal = Some(*class),
             Says::Group(_)
@@ -116,7 +117,12 @@ pub(crate) fn story(told: &Told) -> Story {
     // Whoever stays where they are as the robot comes into their room or car is inside.
     let elevator = story.place == Some(PlaceClass::Elevator);
     let closed = elevator || story.place == Some(PlaceClass::Room);
-    let comes_in = |step: &Step| step.when.iter().any(|reason| reason.cue == Cue::Visible);
+    let enters = told.statements.iter().any(|statement| {
+        matches!(&statement.says, Says::Then(Reason { who: None, cue: Cue::Visible, .. }))
+            || matches!(&statement.says, Says::RobotGoal(class) if Some(*class) == story.place)
+    });
+    let comes_in =
+        |step: &Step| step.when.iter().any(|reason| reason.cue == Cue::Visible) || enters && step.when.is_empty();
     for person in story.people.iter_mut().filter(|person| closed && person.relation.is_none_or(Relation::stands)) {
         if person
             .steps
@@ -128,8 +134,15 @@ pub(crate) fn story(told: &Told) -> Story {
     }
     // Whoever comes out, or stays inside, is where the robot goes.
     let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
-    if story.place.is_none() && story.people.iter().any(inside) {
+    if story.place.is_none() && (there || story.people.iter().any(inside)) {
         story.place = story.robot_goal;
+    }
+    // In the open nobody is inside.
+    let open = story.place.is_some_and(|place| {
+        !matches!(place, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway | PlaceClass::ElevatorLobby)
+    });
+    for person in story.people.iter_mut().filter(|person| open && person.relation == Some(Relation::Staying)) {
+        person.relation = Some(Relation::Static);
     }
     story
 }
@@ -156,6 +169,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::RobotSays(..)
             | Says::Then(_)
             | Says::Happens(..)
+            | Says::There
             | Says::RobotStart(_)
             | Says::RobotGoal(_)
             | Says::Background(_)

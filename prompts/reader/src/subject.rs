@@ -109,6 +109,15 @@ impl Parser<'_> {
         if !all.is_empty() && all.len() == rest.len() && all.len() == count && matches!(first.head, Head::Role(_)) {
             let first = Noun { names: all, ..first.clone() };
             clause.subject = vec![first];
+            return;
+        }
+        // `a couple, a woman and her husband`: who they are.
+        let people: u32 = rest.iter().map(|noun| noun.count.unwrap_or(1)).sum();
+        let roles = rest.iter().all(|noun| matches!(noun.head, Head::Role(_)) && !noun.generic);
+        let anybody = first.generic || first.group && matches!(&first.head, Head::Role(role) if role == "person");
+        if anybody && roles && rest.len() > 1 && first.count == Some(people) {
+            clause.group = first.group;
+            clause.subject = rest.to_vec();
         }
     }
 

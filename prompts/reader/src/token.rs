@@ -72,6 +72,8 @@ pub(crate) enum Sort {
     Label,
     /// A role towards others: `colleague`.
     Mate,
+    /// Where was spoken of: `there`.
+    There,
     /// A role that can be seen of anybody: `boy`.
     Seen,
     Slow,
