@@ -151,6 +151,7 @@ fn owns(tokens: &[Token], at: usize) -> bool {
             || next.is(Sort::Indefinite)
             || next.is(Sort::At)
             || next.is(Sort::Definite)
+            || next.number().is_some()
     };
     ends && next.is_some_and(|next| !is(next))
 }

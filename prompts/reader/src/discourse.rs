@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::Gesture;
+use socrates_model::{Gesture, Relation};
 
 use crate::noun::{Head, Noun, Pick};
 use crate::rows::{Act, Cue};
@@ -77,6 +77,10 @@ struct Cast {
     asked: Option<Gesture>,
     /// What was done last, or not done, for `the second does`.
     done: Option<Deed<People>>,
+    /// How somebody was said last to stand to the robot's way, where nobody has done anything since.
+    related: Option<Relation>,
+    /// Who was called the others last.
+    others: People,
 }
 
 impl Cast {
@@ -101,10 +105,20 @@ impl Cast {
                 self.tells |= all && self.anybody(&self.unnamed);
                 Says::Introduce(self.people(who))
             }
-            Says::Relate(who, relation, side) => Says::Relate(self.people(who), *relation, *side),
+            Says::Relate(who, relation, side) => {
+                if relation.is_some() {
+                    self.related = *relation;
+                }
+                Says::Relate(self.people(who), *relation, *side)
+            }
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
+            // `a second one does so`: stands to the robot's way as the first does.
+            Says::Do(deed) if deed.obeys && !deed.not && self.asked.is_none() && self.related.is_some() => {
+                Says::Relate(self.people(&deed.who), self.related, None)
+            }
             Says::Do(deed) => {
+                self.related = None;
                 let deed = self.deed(deed);
                 // Of nobody nothing can be played.
                 if deed.who.is_empty() { Says::NotRead } else { Says::Do(deed) }
@@ -293,7 +307,9 @@ impl Cast {
     /// Whoever was named last and may be a woman, or a man, as the pronoun says.
     fn one_named_last(&mut self, female: Option<bool>) -> People {
         let others = self.before.iter().copied().chain(self.everybody().into_iter().rev());
-        let mut all = self.last.iter().copied().chain(others);
+        // `a man with two children; he …` is no child.
+        let one = self.before.iter().copied().filter(|_| self.before.len() == 1 && self.last.len() > 1);
+        let mut all = one.chain(self.last.iter().copied()).chain(others);
         let may = |person: &usize| female.is_none() || self.female.get(person).is_none_or(|own| Some(*own) == female);
         let found = all.find(may).or_else(|| self.last.first().copied());
         if let (Some(person), Some(female)) = (found, female) {
@@ -320,6 +336,12 @@ impl Cast {
                 }
                 base
             }
+            // `all three`, of two and one who were named.
+            None if noun.count.is_some_and(|count| usize::try_from(count) == Ok(self.roles.len()))
+                && matches!(noun.pick, Pick::All | Pick::None | Pick::The) =>
+            {
+                self.everybody()
+            }
             None if !self.set.is_empty() => self.set.clone(),
             None => self.everybody(),
         };
@@ -333,14 +355,16 @@ impl Cast {
             Some(people) => people,
             // `the five`, `both`, `none` of too few: as many as there are.
             None if matches!(noun.pick, Pick::The | Pick::All | Pick::None | Pick::Others | Pick::Former)
-                && noun.ordinal.is_none() =>
+                && noun.ordinal.is_none()
+                && !(noun.pick == Pick::Others && base.len() == 1) =>
             {
                 base
             }
             None if noun.of.is_some() => base,
             None => {
                 let role = base.first().and_then(|person| self.roles.get(*person)).cloned();
-                let another = role.filter(|_| noun.pick == Pick::Another || noun.ordinal.is_some());
+                let another =
+                    role.filter(|_| matches!(noun.pick, Pick::Another | Pick::Others) || noun.ordinal.is_some());
                 self.new_people(noun, &another.unwrap_or_else(|| "person".to_owned()))
             }
         }
@@ -365,7 +389,13 @@ impl Cast {
                 } else {
                     rest
                 };
-                rest.into_iter().take(count.unwrap_or(MOST)).collect()
+                let rest: People = rest.into_iter().take(count.unwrap_or(MOST)).collect();
+                if rest.is_empty() {
+                    self.others.iter().copied().filter(|other| base.contains(other)).collect()
+                } else {
+                    self.others.clone_from(&rest);
+                    rest
+                }
             }
             (Pick::Another, _) => {
                 free.into_iter().filter(|person| !self.last.contains(person)).take(count.unwrap_or(1)).collect()

@@ -318,8 +318,14 @@ impl Reader<'_> {
     }
 
     /// Whether a word may stand before a role: `an elderly forklift driver`.
-    fn modifies(token: &Token, told: bool) -> bool {
+    fn modifies(&self, token: &Token, told: bool) -> bool {
+        // `at the junction an old man`: another noun phrase begins.
+        let words = &self.lexicon.words;
+        let begins = token.is(Sort::Indefinite)
+            || token.is(Sort::Definite)
+            || words.numbers.contains_key(&token.lemma) && token.lemma != "one";
         token.kind == Kind::Word
+            && !begins
             && (token.is(Sort::Looks)
                 || token.is(Sort::Thing)
                 || token.is(Sort::Slow)
@@ -407,7 +413,7 @@ impl Reader<'_> {
             }
             let before_role =
                 next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.spelled.ends_with("ing");
-            if !Self::modifies(token, told) && !before_role {
+            if !self.modifies(token, told) && !before_role {
                 break;
             }
             if token.is(Sort::Slow) {

@@ -50,7 +50,10 @@ impl Parser<'_> {
                 let condition = self.condition(tie);
                 let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
                 let before = self.found.len() > first && (!apart || !more);
-                match self.found.last_mut().filter(|_| before) {
+                let own = self.found.get(first..).unwrap_or_default();
+                let acts = own.iter().rposition(|clause| !clause.acts.is_empty());
+                let clause = acts.filter(|_| !more).map(|at| first + at).or(self.found.len().checked_sub(1));
+                match clause.and_then(|at| self.found.get_mut(at)).filter(|_| before) {
                     Some(clause) => clause.conditions.push(condition),
                     None => {
                         if pending.is_empty() {
@@ -93,6 +96,7 @@ impl Parser<'_> {
             if clause.conditions.is_empty() && clause.after_s.is_none() && clause.join != Join::Then {
                 clause.conditions.clone_from(&ahead);
             }
+            self.gap(&mut clause, first);
             self.share(&mut clause, first);
             self.front(&clause, first);
             self.found.push(clause);
@@ -140,6 +144,16 @@ impl Parser<'_> {
             last.conditions.clone_from(&clause.conditions);
         }
         true
+    }
+
+    /// `the first stops when it is near, the second when it is 1 m away`: does the same.
+    fn gap(&self, clause: &mut Clause, first: usize) {
+        let before = self.found.get(first..).and_then(<[Clause]>::last);
+        let tells = !clause.conditions.is_empty() || clause.within_m.is_some() || clause.lasts_s.is_some();
+        let other = clause.own && clause.subject.iter().all(|noun| noun.head == Head::Bare);
+        if let Some(before) = before.filter(|_| tells && other && clause.acts.is_empty() && clause.does.is_none()) {
+            clause.acts.clone_from(&before.acts);
+        }
     }
 
     /// What is said when for the first of several acts holds for those joined to it: `when it is near, he stops and looks`.
@@ -310,8 +324,11 @@ impl Parser<'_> {
         let before = self.chunks.get(..self.at).unwrap_or_default();
         let noun = before.iter().rev().find(|chunk| !chunk.is_mark(Mark::Comma)).and_then(Chunk::noun);
         let which = self.peek().is_some_and(|chunk| chunk.word(Sort::Which));
-        let robot = noun.filter(|noun| noun.head == Head::Robot && which).map(|_| Head::Robot);
-        clause.subject.push(Noun::new(robot.unwrap_or(Head::Who), tokens));
+        // `follows a nurse, who …`: the nurse; of the subject all of it is meant.
+        let of_subject = noun.is_some_and(|noun| self.subject.iter().any(|own| own.tokens == noun.tokens));
+        let robot = noun.filter(|noun| noun.head == Head::Robot && which).map(|_| Noun::new(Head::Robot, tokens.clone()));
+        let object = noun.filter(|noun| names_somebody(noun) && !of_subject).cloned();
+        clause.subject.push(robot.or(object).unwrap_or_else(|| Noun::new(Head::Who, tokens)));
         self.at += 1;
         true
     }

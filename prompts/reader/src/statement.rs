@@ -528,7 +528,7 @@ impl Maker<'_> {
         let goes = route
             || along
             || robot
-                && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes)));
+                && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes || frame.part.is_some())));
         let robot = robot || clause.subject.is_empty();
         let part = clause.acts.iter().filter(|act| robot && !act.not).find_map(|act| frame(act)?.part);
         let rank = match () {
