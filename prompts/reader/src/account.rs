@@ -89,6 +89,7 @@ impl Fate {
             Says::NotPlayed(why) => (Self::NotPlayed(why.clone()), 2),
             Says::Background(reason) => (Self::Background(*reason), 0),
             Says::Introduce(_)
+            | Says::Noted(_)
             | Says::Relate(..)
             | Says::Group(_)
             | Says::Pace(..)

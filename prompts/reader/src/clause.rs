@@ -60,6 +60,8 @@ pub(crate) struct At {
     pub(crate) class: Option<PlaceClass>,
     pub(crate) to: bool,
     pub(crate) from: bool,
+    /// Whether the way leads past it.
+    pub(crate) via: bool,
     /// Its tokens: the first, and the one behind it.
     pub(crate) tokens: (usize, usize),
 }
@@ -80,6 +82,8 @@ pub(crate) struct Clause {
     pub(crate) join: Join,
     /// Whether what comes next in it is denied.
     pub(crate) not: bool,
+    /// Whether it is asked.
+    pub(crate) asks: bool,
     /// Whether its subject stands in it.
     pub(crate) own: bool,
     /// Whose acts; of an ellipsis, those of the clause before. Empty where nobody was named yet.
@@ -115,6 +119,7 @@ impl Clause {
         Self {
             join,
             not: false,
+            asks: false,
             own: false,
             subject: Vec::new(),
             acts: Vec::new(),

@@ -39,11 +39,38 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
         cast.begin(statement);
         let says = cast.says(&statement.says);
         if let Some(says) = says {
-            let Statement { tokens, first, tells, partly, .. } = statement;
-            told.push(Statement { partly: *partly, tokens: tokens.clone(), first: *first, tells: *tells, says });
+            let Statement { tokens, first, tells, partly, asks, .. } = statement;
+            let (partly, first, tells, asks) = (*partly, *first, *tells, *asks);
+            told.push(Statement { partly, tokens: tokens.clone(), first, tells, asks, says });
         }
     }
-    Told { roles: cast.roles, vague: cast.vague, statements: told }
+    let told = Told { roles: cast.roles, vague: cast.vague, statements: told };
+    Told { statements: doubted(&told), ..told }
+}
+
+/// The statements of a text, and that those are not read that name somebody of whom nothing else is told, where of others
+/// something is: mostly they are somebody else who was not made out.
+fn doubted(told: &Told) -> Vec<Statement<People>> {
+    let known = |person: usize| {
+        told.statements.iter().any(|statement| match &statement.says {
+            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) | Says::Noted(who) => who.contains(&person),
+            Says::Do(deed) => {
+                deed.who.contains(&person) || deed.whom.as_ref().is_some_and(|whom| whom.contains(&person))
+            }
+            Says::RobotSays(_, Some(who)) => who.contains(&person),
+            _ => false,
+        })
+    };
+    let unknown: People = (0..told.roles.len()).filter(|person| !known(*person)).collect();
+    let mut all = told.statements.clone();
+    if unknown.len() < told.roles.len() {
+        for statement in &told.statements {
+            if matches!(&statement.says, Says::Introduce(who) if who.iter().any(|person| unknown.contains(person))) {
+                all.push(Statement { says: Says::NotRead, ..statement.clone() });
+            }
+        }
+    }
+    all
 }
 
 #[derive(Default)]
@@ -66,9 +93,13 @@ struct Cast {
     meant: BTreeMap<usize, People>,
     /// Those of whom a colon tells, who have no role yet.
     unnamed: People,
+    /// Whether it tells of exactly as many: `visitors: a father and his son`.
+    exact: bool,
     /// The same, of the statement that is being told.
     fresh: People,
     tells: bool,
+    /// Whether a question is being told.
+    asks: bool,
     /// What people react to from now on.
     pending: Vec<Reason<People>>,
     /// The sign that somebody made last, to which others react.
@@ -94,6 +125,8 @@ impl Cast {
             self.pending.retain(|reason| reason.cue == Cue::Says);
         }
         self.tells = statement.tells;
+        self.exact = false;
+        self.asks = statement.asks;
     }
 
     fn says(&mut self, says: &Says<Named>) -> Option<Says<People>> {
@@ -102,6 +135,7 @@ impl Cast {
                 // `three people get out, a cleaner, a doctor and a visitor`
                 let count: u32 = who.iter().map(|noun| noun.count.unwrap_or(1)).sum();
                 let all = who.len() > 1 && u32::try_from(self.unnamed.len()) == Ok(count);
+                self.exact = all && self.tells;
                 self.tells |= all && self.anybody(&self.unnamed);
                 Says::Introduce(self.people(who))
             }
@@ -111,6 +145,7 @@ impl Cast {
                 }
                 Says::Relate(self.people(who), *relation, *side)
             }
+            Says::Noted(who) => Says::Noted(self.people(who)),
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
             // `a second one does so`: stands to the robot's way as the first does.
@@ -346,7 +381,10 @@ impl Cast {
             None => self.everybody(),
         };
         if let Some(except) = &noun.except {
-            let except = self.picks(except, &base).unwrap_or_default();
+            // `all but one`: but for the last.
+            let bare = except.head == Head::Bare && except.ordinal.is_none() && except.pick == Pick::Some;
+            let except = Noun { ordinal: except.ordinal.or(bare.then_some(0)), ..(**except).clone() };
+            let except = self.picks(&except, &base).unwrap_or_default();
             let rest: People = base.into_iter().filter(|person| !except.contains(person)).collect();
             self.picked.clone_from(&rest);
             return rest;
@@ -420,7 +458,7 @@ impl Cast {
             && !matches!(noun.pick, Pick::The | Pick::None)
             && !self.unnamed.is_empty()
             && self.unnamed.len() >= count
-            && self.anybody(&self.unnamed)
+            && (self.exact || self.anybody(&self.unnamed))
         {
             let named: People = self.unnamed.drain(..count).collect();
             for person in &named {
@@ -534,7 +572,8 @@ impl Cast {
         let count = if noun.ordinal.is_some() && noun.count.is_none() { 1 } else { count };
         self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
         let people: People = (first..first + count).collect();
-        if noun.generic && noun.several && noun.count.is_none() && noun.pick == Pick::Plain {
+        let any = noun.generic || ANYBODY.contains(&role);
+        if any && (self.asks || noun.several && noun.count.is_none() && noun.pick == Pick::Plain) {
             self.vague.extend(&people);
         }
         if count > 1 {

@@ -1,6 +1,7 @@
 //! Finds the row whose pattern matches the most chunks from a place on.
 
 use crate::chunk::{Amount, Chunk, Is};
+use crate::lex::OWNS;
 use crate::noun::Noun;
 use crate::pattern::{AMOUNT, Part, Pattern, Patterns};
 use crate::token::{Bent, Sort};
@@ -36,6 +37,8 @@ pub(crate) fn longest(chunks: &[Chunk], at: usize, patterns: &Patterns) -> Optio
     let (lemma, text) = match first.is {
         Is::Mark(_) | Is::Noun(_) | Is::Whose(_) => return None,
         Is::Amount(_) => (AMOUNT, AMOUNT),
+        // A short `is`, or `has`.
+        Is::Word if first.spelled == OWNS => ("be", "have"),
         Is::Word | Is::Place(_) => (first.lemma.as_str(), first.spelled.as_str()),
     };
     let be = |back: usize| {
@@ -98,7 +101,8 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
     let Some(chunk) = chunks.get(found.end) else { return false };
     let fits = match (part, &chunk.is) {
         (Part::Word(words), Is::Word | Is::Place(_)) => {
-            (words.contains(&chunk.lemma) || words.contains(&chunk.spelled)) && chunk.tokens.len() == 1
+            let short = chunk.spelled == OWNS && ["be", "have"].iter().any(|word| words.contains(*word));
+            (words.contains(&chunk.lemma) || words.contains(&chunk.spelled) || short) && chunk.tokens.len() == 1
         }
         (Part::Anybody | Part::Robot | Part::Person, Is::Noun(noun)) if noun.nominative => false,
         (Part::Anybody, Is::Noun(noun)) => {

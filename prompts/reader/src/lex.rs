@@ -168,6 +168,11 @@ fn marks(start: usize, piece: &str, text: &str, words: &Words, tokens: &mut Vec<
         }
         _ => return,
     };
+    // `the nurses' station` has no quote in it.
+    let quotes = tokens.iter().filter(|token| token.is_mark(Mark::Quote)).count();
+    if mark == Mark::Quote && matches!(piece, "'" | "’") && before.ends_with('s') && quotes.is_multiple_of(2) {
+        return;
+    }
     // `Dr. Meyer` is one sentence.
     if mark == Mark::Stop && piece == "." && tokens.last().is_some_and(|last| last.is(Sort::Title)) {
         return;
@@ -195,9 +200,17 @@ pub(crate) fn token(at: std::ops::Range<usize>, piece: &str, kind: Kind, words: 
     let mut sorts = words.sorts(&text);
     sorts = sorts.and(words.sorts(&lemma));
     let strange = kind == Kind::Word && lemma == text && sorts.is_empty() && text.len() >= CORRECTED_FROM;
-    if strange && let Some(meant) = meant(&text, words) {
-        lemma = words.base(&meant).0;
+    let mut bent = bent;
+    let unknown = kind == Kind::Word && sorts.is_empty() && text.len() >= CORRECTED_FROM && !words.knows_bent(&text);
+    if let Some(meant) = meant(&text, words).filter(|_| strange) {
+        (lemma, bent) = words.base(&meant);
         sorts = words.sorts(&lemma);
+    } else if unknown {
+        let mut stems = Words::stems(&text).filter(|(stem, _)| stem.len() >= CORRECTED_FROM);
+        if let Some((stem, of)) = stems.find_map(|(stem, bent)| Some((meant(&stem, words)?, bent))) {
+            (lemma, bent) = (words.base(&stem).0, of);
+            sorts = words.sorts(&lemma);
+        }
     }
     let capital = piece.chars().next().is_some_and(char::is_uppercase) && piece.chars().skip(1).all(char::is_lowercase);
     Token { at, spelled: text, lemma, kind, sorts, bent, capital }
@@ -232,7 +245,12 @@ fn swapped_or_lost(known: &str, text: &str) -> bool {
     };
     // `lecture` is no `lecturer`.
     let lost = known.len() == text.len() + 1 && text.len() > CORRECTED_FROM && !known.starts_with(text);
+    // `docter`
+    let other = || known.chars().zip(text.chars()).filter(|(one, other)| one != other);
+    let vowels = |(one, other): (char, char)| "aeiou".contains(one) && "aeiou".contains(other);
+    let vowel =
+        known.len() == text.len() && known.len() > CORRECTED_FROM && other().count() == 1 && other().all(vowels);
     // `visitior`
     let more = known.len() + 1 == text.len() && known.len() > CORRECTED_FROM + 1;
-    sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost || more
+    sorted(known) == sorted(text) || squeezed(known) == squeezed(text) || lost || more || vowel
 }

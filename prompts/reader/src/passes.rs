@@ -130,6 +130,7 @@ impl fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Says::Introduce(who) => write!(f, "introduce {}", spaced(who)),
+            Says::Noted(who) => write!(f, "noted {}", spaced(who)),
             Says::Relate(who, relation, side) => write!(f, "relate {}: {relation:?} {side:?}", spaced(who)),
             Says::Group(who) => write!(f, "group {}", spaced(who)),
             Says::Pace(who, mps) => write!(f, "pace {}: {mps} m/s", spaced(who)),

@@ -4,6 +4,8 @@ use crate::lexicon::Lexicon;
 use crate::noun::{BRISK_MPS, Head, Noun, Pick, SLOW_MPS};
 use crate::token::{Bent, Kind, Mark, Sort, Token};
 
+/// How many a group is of whom no number is said.
+const FEW: u32 = 3;
 /// So many words may stand between an article and its noun.
 const MODIFIERS: usize = 5;
 
@@ -361,7 +363,7 @@ impl Reader<'_> {
             {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several =
-                    token.bent == Bent::S || token.spelled == "people" || noun.count.is_some_and(|count| count > 1);
+                    token.bent == Bent::S || token.lemma == "people" || noun.count.is_some_and(|count| count > 1);
                 noun.pace_mps = pace;
                 noun.modifiers = self
                     .tokens
@@ -384,6 +386,9 @@ impl Reader<'_> {
                 let long = self.peek().is_some_and(|next| {
                     next.spelled.len() > 1 && !next.spelled.ends_with(|c: char| c.is_ascii_digit())
                 });
+                if noun.generic && !noun.several {
+                    self.apposition(noun);
+                }
                 if !noun.several
                     && long
                     && let Some(name) = self.name()
@@ -411,8 +416,13 @@ impl Reader<'_> {
             if token.is(Sort::Group) && (told || next.is_some_and(|next| next.is(Sort::Of))) {
                 return self.group(noun);
             }
-            let before_role =
-                next.is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People)) && token.spelled.ends_with("ing");
+            // `a limping man`, `two order pickers`
+            let several = noun.count.is_some_and(|count| count > 1);
+            let plural = |next: &Token| several && token.bent == Bent::Base && next.bent == Bent::S;
+            let before_role = token.is_said()
+                && next.is_some_and(|next| {
+                    (next.is(Sort::Role) || next.is(Sort::People)) && (token.spelled.ends_with("ing") || plural(next))
+                });
             if !self.modifies(token, told) && !before_role {
                 break;
             }
@@ -440,7 +450,10 @@ impl Reader<'_> {
             && let Some(members) = self.noun()
         {
             let pick = noun.pick;
-            *noun = Noun { pick, count: members.count.or(own), several: true, group: true, ..members };
+            // `a group of children`: more than two; `a family of four`.
+            let count = members.count.or(own).or((pick == Pick::Some).then_some(FEW));
+            let head = if members.head == Head::Bare { Head::Role("person".to_owned()) } else { members.head.clone() };
+            *noun = Noun { head, pick, count, several: true, group: true, ..members };
             return true;
         }
         self.at = back;
@@ -537,6 +550,11 @@ impl Reader<'_> {
             && noun.of.is_none()
             && self.peek().is_some_and(|token| token.is(Sort::Be) || token.is(Sort::Of) || token.is(Sort::Have))
         {
+            return None;
+        }
+        // `a few steps behind`: of several people it would be `step`.
+        let bent = self.peek().is_some_and(|next| next.bent == Bent::S && !next.is(Sort::Be) && !next.is(Sort::Have));
+        if several && alone && bent && noun.of.is_none() {
             return None;
         }
         // `two oncoming`

@@ -65,7 +65,8 @@ impl Parser<'_> {
             before.is_some_and(|before| before.word(Sort::To) || before.word(Sort::Into) || before.word(Sort::For));
         let from = before.is_some_and(|before| before.word(Sort::From));
         let tokens = self.chunks.get(at).map_or((0, 0), |chunk| (chunk.tokens.start, chunk.tokens.end));
-        At { class, to, from, tokens }
+        let via = before.is_some_and(|before| before.lemma == "via");
+        At { class, to, from, via, tokens }
     }
 
     pub(crate) fn word(&mut self, clause: &mut Clause) {

@@ -38,6 +38,10 @@ impl Parser<'_> {
         let mut apart = true;
         while let Some(chunk) = self.peek() {
             if chunk.is_mark(Mark::Stop) {
+                let asks = chunk.spelled == "?";
+                for clause in self.found.iter_mut().skip(first) {
+                    clause.asks = asks;
+                }
                 self.at += 1;
                 break;
             }
@@ -326,7 +330,8 @@ impl Parser<'_> {
         let which = self.peek().is_some_and(|chunk| chunk.word(Sort::Which));
         // `follows a nurse, who …`: the nurse; of the subject all of it is meant.
         let of_subject = noun.is_some_and(|noun| self.subject.iter().any(|own| own.tokens == noun.tokens));
-        let robot = noun.filter(|noun| noun.head == Head::Robot && which).map(|_| Noun::new(Head::Robot, tokens.clone()));
+        let robot =
+            noun.filter(|noun| noun.head == Head::Robot && which).map(|_| Noun::new(Head::Robot, tokens.clone()));
         let object = noun.filter(|noun| names_somebody(noun) && !of_subject).cloned();
         clause.subject.push(robot.or(object).unwrap_or_else(|| Noun::new(Head::Who, tokens)));
         self.at += 1;

@@ -33,6 +33,8 @@ pub struct Reason<W> {
 pub enum Says<W> {
     /// Somebody is there.
     Introduce(W),
+    /// Somebody does what leaves no trace in a form: walks, or pays no attention.
+    Noted(W),
     /// How somebody stands to the robot's way.
     Relate(W, Option<Relation>, Option<Side>),
     /// They are a group.
@@ -114,6 +116,8 @@ pub struct Statement<W> {
     pub(crate) first: bool,
     /// Whether it tells of those named before a colon.
     pub(crate) tells: bool,
+    /// Whether it is asked.
+    pub(crate) asks: bool,
     /// What it says.
     pub says: Says<W>,
 }
@@ -123,10 +127,11 @@ pub(crate) type Named = Vec<Noun>;
 
 /// The statements of a text.
 pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement<Named>> {
-    let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false, partly: false };
+    let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false, partly: false, asks: false };
     for clause in clauses {
         maker.first = clause.join == Join::Start;
         maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
+        maker.asks = clause.asks;
         maker.clause(clause);
     }
     maker.found
@@ -138,11 +143,13 @@ struct Maker<'a> {
     first: bool,
     tells: bool,
     partly: bool,
+    asks: bool,
 }
 
 impl Maker<'_> {
     fn say(&mut self, tokens: Range<usize>, says: Says<Named>) {
-        self.found.push(Statement { partly: self.partly, tokens, first: self.first, tells: self.tells, says });
+        let (partly, first, tells, asks) = (self.partly, self.first, self.tells, self.asks);
+        self.found.push(Statement { partly, tokens, first, tells, asks, says });
         self.first = false;
     }
 
@@ -412,7 +419,7 @@ impl Maker<'_> {
             self.say(tokens, Says::NotRead);
         } else if relation.is_none() && !frame.group {
             // What is denied, or says no more than that somebody is there.
-            self.say(tokens, Says::Introduce(who));
+            self.say(tokens, Says::Noted(who));
         }
     }
 
@@ -528,7 +535,11 @@ impl Maker<'_> {
         let goes = route
             || along
             || robot
-                && (clause.acts.is_empty() || clause.acts.iter().any(|act| frame(act).is_some_and(|frame| frame.goes || frame.part.is_some())));
+                && (clause.acts.is_empty()
+                    || clause
+                        .acts
+                        .iter()
+                        .any(|act| frame(act).is_some_and(|frame| frame.goes || frame.part.is_some())));
         let robot = robot || clause.subject.is_empty();
         let part = clause.acts.iter().filter(|act| robot && !act.not).find_map(|act| frame(act)?.part);
         let rank = match () {
@@ -537,12 +548,15 @@ impl Maker<'_> {
             () if clause.acts.is_empty() => 2,
             () => 3,
         };
-        for (number, At { class, to, from, tokens }) in clause.places.iter().enumerate() {
+        for (number, At { class, to, from, via, tokens }) in clause.places.iter().enumerate() {
             let part = part.filter(|_| number == 0);
             let says = match class {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
                 Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),
+                Some(_) if *via && (goes || part.is_some()) => {
+                    Says::NotPlayed("the robot takes its own way".to_owned())
+                }
                 Some(class) if part == Some(Part::Start) => Says::RobotStart(*class),
                 Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),
                 Some(class) => Says::Happens(*class, if *to { 1 } else { rank }),

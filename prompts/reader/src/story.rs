@@ -98,6 +98,7 @@ pub(crate) fn story(told: &Told) -> Story {
             | Says::Happens(..)
             | Says::RobotSays(None, _)
             | Says::Introduce(_)
+            | Says::Noted(_)
             | Says::Then(_)
             | Says::Background(_)
             | Says::NotPlayed(_)
@@ -164,8 +165,9 @@ fn unsure(told: &Told) -> Vec<usize> {
                 of(&deed.who);
                 of(deed.whom.as_deref().unwrap_or_default());
             }
-            Says::Introduce(who) | Says::RobotSays(_, Some(who)) if !statement.partly => of(who),
+            Says::Introduce(who) | Says::Noted(who) | Says::RobotSays(_, Some(who)) if !statement.partly => of(who),
             Says::Introduce(_)
+            | Says::Noted(_)
             | Says::RobotSays(..)
             | Says::Then(_)
             | Says::Happens(..)

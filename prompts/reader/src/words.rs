@@ -123,9 +123,17 @@ impl Words {
 
     /// The base form of a word in lower case, and how it was bent.
     pub(crate) fn base(&self, word: &str) -> (String, Bent) {
-        let ending = || ENDINGS.iter().find(|(end, _, _)| word.ends_with(end)).map_or(Bent::Ed, |(_, _, bent)| *bent);
         if let Some(base) = self.forms.get(word) {
-            return (base.clone(), if base == word { Bent::Base } else { ending() });
+            let noun = [Sort::Role, Sort::People, Sort::Indefinite].iter().any(|sort| self.sorts(base).has(*sort));
+            let bent = match ENDINGS.iter().find(|(end, _, _)| word.ends_with(end)) {
+                _ if base == word => Bent::Base,
+                Some((_, _, bent)) => *bent,
+                // `women` are several, and a `ped` is one.
+                None if noun && word.ends_with("en") => Bent::S,
+                None if noun => Bent::Base,
+                None => Bent::Ed,
+            };
+            return (base.clone(), bent);
         }
         if self.knows(word) && !word.ends_with("ing") || word.len() < 3 {
             return (word.to_owned(), Bent::Base);
@@ -155,7 +163,16 @@ impl Words {
 
     /// Known words of at least this length, for spelling.
     pub(crate) fn long(&self, letters: usize) -> impl Iterator<Item = &str> {
-        self.sorts.keys().map(String::as_str).filter(move |word| word.len() >= letters)
+        self.sorts.keys().chain(self.forms.keys()).map(String::as_str).filter(move |word| word.len() >= letters)
+    }
+
+    /// What a word would be without each ending, for spelling: `aproaches` is `aproach`, bent.
+    pub(crate) fn stems<'a>(word: &'a str) -> impl Iterator<Item = (String, Bent)> + 'a {
+        let stems = |(end, puts, bent): &'static (&str, &[&str], Bent)| {
+            let cut = word.strip_suffix(end);
+            cut.into_iter().flat_map(move |cut| puts.iter().map(move |put| (format!("{cut}{put}"), *bent)))
+        };
+        ENDINGS.iter().flat_map(stems)
     }
 }
 
