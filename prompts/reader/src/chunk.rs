@@ -114,7 +114,10 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
         && before
             .is_some_and(|before| !before.is(Sort::Definite) && !before.is(Sort::At) && !before.is_mark(Mark::Stop));
     let place = place(tokens, at, lexicon).filter(|_| !acts);
-    if let Some(noun) = noun(tokens, at, lexicon) {
+    // `the robot guides a visitor` tells of no guides.
+    let one = |token: &Token| token.is(Sort::Robot) || token.is(Sort::Role) && token.bent == Bent::Base;
+    let acts = token.bent == Bent::S && token.is(Sort::Verb) && before.is_some_and(one);
+    if let Some(noun) = noun(tokens, at, lexicon).filter(|_| !acts) {
         let end = noun.tokens.end;
         if place.is_none_or(|(_, place_end)| place_end < end) {
             return if owns(tokens, end) { (Is::Whose(noun), end + 1) } else { (Is::Noun(noun), end) };

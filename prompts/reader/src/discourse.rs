@@ -110,6 +110,10 @@ struct Cast {
     done: Option<Deed<People>>,
     /// How somebody was said last to stand to the robot's way, where nobody has done anything since.
     related: Option<Relation>,
+    /// How everybody stands to it.
+    relations: BTreeMap<usize, Relation>,
+    /// Of whom a pronoun is not said: those who do it.
+    excluded: People,
     /// Who was called the others last.
     others: People,
 }
@@ -143,7 +147,11 @@ impl Cast {
                 if relation.is_some() {
                     self.related = *relation;
                 }
-                Says::Relate(self.people(who), *relation, *side)
+                let who = self.people(who);
+                if let Some(relation) = relation {
+                    self.relations.extend(who.iter().map(|person| (*person, *relation)));
+                }
+                Says::Relate(who, *relation, *side)
             }
             Says::Noted(who) => Says::Noted(self.people(who)),
             Says::Group(who) => Says::Group(self.people(who)),
@@ -173,6 +181,7 @@ impl Cast {
             }
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,
+            Says::RobotVia(class) => Says::RobotVia(*class),
             Says::RobotStart(class) => Says::RobotStart(*class),
             Says::RobotGoal(class) => Says::RobotGoal(*class),
             Says::Background(reason) => Says::Background(*reason),
@@ -198,9 +207,11 @@ impl Cast {
     fn deed(&mut self, deed: &Deed<Named>) -> Deed<People> {
         let who = self.people(&deed.who);
         let whom = deed.whom.as_ref().map(|whom| {
-            let last = self.last.clone();
+            let (last, before) = (self.last.clone(), self.before.clone());
+            self.excluded.clone_from(&who);
             let mut whom = self.people(whom);
-            self.last = last;
+            self.excluded.clear();
+            (self.last, self.before) = (last, before);
             // Nobody follows themselves: `his colleague follows him`.
             if whom.iter().any(|whom| who.contains(whom)) {
                 let others = self.before.iter().chain(self.set.iter()).copied();
@@ -218,7 +229,15 @@ impl Cast {
             };
         }
         let (mut act, mut says, mut whom) = (deed.act, deed.says, whom);
-        if deed.obeys {
+        let as_robot = when.iter().find_map(|reason| match reason.cue {
+            Cue::Stopped => Some(Act::StandStill),
+            Cue::Moving => Some(Act::Navigate),
+            _ => None,
+        });
+        if let Some(same) = as_robot.filter(|_| deed.obeys && !deed.when.is_empty()) {
+            // `if it stops, so does she`
+            act = same;
+        } else if deed.obeys {
             match (self.asked_for(), &self.done) {
                 (Some(asked), _) => act = asked,
                 (None, Some(done)) => {
@@ -344,9 +363,10 @@ impl Cast {
         let others = self.before.iter().copied().chain(self.everybody().into_iter().rev());
         // `a man with two children; he …` is no child.
         let one = self.before.iter().copied().filter(|_| self.before.len() == 1 && self.last.len() > 1);
-        let mut all = one.chain(self.last.iter().copied()).chain(others);
+        let all: People = one.chain(self.last.iter().copied()).chain(others).collect();
+        let all = || all.iter().copied().filter(|person| !self.excluded.contains(person));
         let may = |person: &usize| female.is_none() || self.female.get(person).is_none_or(|own| Some(*own) == female);
-        let found = all.find(may).or_else(|| self.last.first().copied());
+        let found = all().find(may).or_else(|| self.last.first().copied());
         if let (Some(person), Some(female)) = (found, female) {
             self.female.entry(person).or_insert(female);
         }
@@ -364,7 +384,9 @@ impl Cast {
     fn bare(&mut self, noun: &Noun) -> People {
         let base = match &noun.of {
             Some(of) => {
-                let of = vec![(**of).clone()];
+                // `all four of the people`: there are four.
+                let count = of.count.or(noun.count.filter(|_| noun.pick == Pick::All && of.generic));
+                let of = vec![Noun { count, ..(**of).clone() }];
                 let base = self.people(&of);
                 if base.len() > 1 && base != self.set {
                     (self.set, self.picked) = (base.clone(), People::new());
@@ -469,10 +491,15 @@ impl Cast {
             return named;
         }
         let known: People = match () {
+            () if anybody && noun.known_by.is_some() => {
+                let known = |person: &usize| self.relations.get(person).copied() == noun.known_by;
+                self.everybody().into_iter().filter(known).collect()
+            }
             () if anybody && !self.set.is_empty() && noun.several => self.set.clone(),
             () if anybody => self.everybody(),
             // `the first guy`
-            () if noun.by_looks && noun.ordinal.is_some() && !self.set.is_empty() => self.set.clone(),
+            () if noun.by_looks && noun.ordinal.is_some() && self.set.is_empty() => self.everybody(),
+            () if noun.by_looks && noun.ordinal.is_some() => self.set.clone(),
             () => self
                 .everybody()
                 .into_iter()

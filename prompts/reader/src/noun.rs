@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::Range;
 
+use socrates_model::Relation;
+
 /// What a noun phrase is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Head {
@@ -73,6 +75,8 @@ pub(crate) struct Noun {
     pub(crate) mate: bool,
     /// Whether the role says no more than can be seen of anybody: `boy`.
     pub(crate) by_looks: bool,
+    /// How they are known to stand to the robot's way: `the one who crosses`.
+    pub(crate) known_by: Option<Relation>,
     /// Words before the role, in their base form.
     pub(crate) modifiers: Vec<String>,
     /// But for whom: `all but the last`.
@@ -100,6 +104,7 @@ impl Noun {
             generic: false,
             mate: false,
             by_looks: false,
+            known_by: None,
             modifiers: Vec::new(),
             except: None,
             of: None,

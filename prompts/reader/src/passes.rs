@@ -148,6 +148,7 @@ impl fmt::Display for Shown<'_> {
             Says::Then(reason) => write!(f, "then {:?}", reason.cue),
             Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),
             Says::There => f.write_str("happens there"),
+            Says::RobotVia(class) => write!(f, "robot goes via {class}"),
             Says::RobotStart(class) => write!(f, "robot starts {class}"),
             Says::RobotGoal(class) => write!(f, "robot goes {class}"),
             Says::Background(reason) => write!(f, "background {}", reason.name()),

@@ -84,6 +84,10 @@ impl Reader<'_> {
         }
         told |= self.determiner(&mut noun);
         told |= self.numbers(&mut noun);
+        // `both the first and the second`: the first.
+        if noun.pick == Pick::All && noun.ordinal.is_some() {
+            noun.pick = Pick::The;
+        }
         if self.head(&mut noun, told) {
             self.label(&mut noun);
             self.of(&mut noun);
@@ -394,7 +398,7 @@ impl Reader<'_> {
                     && let Some(name) = self.name()
                     && let Head::Name(own) = name.head
                 {
-                    noun.beside = Some(token_role(&noun.head));
+                    noun.beside = name.beside.or_else(|| Some(token_role(&noun.head)));
                     noun.head = Head::Name(own);
                 }
                 return true;
@@ -439,6 +443,12 @@ impl Reader<'_> {
 
     /// `a group of three visitors`, `a pair of nurses`, `a couple`.
     fn group(&mut self, noun: &mut Noun) -> bool {
+        // `in two groups of three` tells how they stand.
+        let start = noun.tokens.start;
+        let stand = start.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.lemma == "in");
+        if stand && noun.count.is_some_and(|count| count > 1) {
+            return false;
+        }
         let own = self.peek().and_then(|token| match token.lemma.as_str() {
             "pair" | "couple" | "dyad" | "duo" => Some(2),
             "trio" => Some(3),
@@ -554,7 +564,9 @@ impl Reader<'_> {
         }
         // `a few steps behind`: of several people it would be `step`.
         let bent = self.peek().is_some_and(|next| next.bent == Bent::S && !next.is(Sort::Be) && !next.is(Sort::Have));
-        if several && alone && bent && noun.of.is_none() {
+        let of_group =
+            noun.tokens.start.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|of| of.is(Sort::Of));
+        if several && alone && bent && noun.of.is_none() && !of_group {
             return None;
         }
         // `two oncoming`
@@ -587,7 +599,10 @@ impl Reader<'_> {
                 Sort::Cause,
             ];
             let number = self.lexicon.words.numbers.contains_key(&token.lemma);
+            // `the last turn their heads`
+            let owned = self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Possessive) || next.is(Sort::To));
             !token.is_said()
+                || token.is(Sort::Verb) && token.is(Sort::Empty) && owned
                 || !token.is(Sort::Empty) && joins.iter().any(|sort| token.is(*sort))
                 || token.spelled.ends_with("ly")
                 || token.is(Sort::Fill) && !token.is(Sort::Empty)

@@ -3,7 +3,7 @@
 use crate::chunk::{Amount, Chunk, Is};
 use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
-use crate::noun::{BRISK_MPS, SLOW_MPS};
+use crate::noun::{BRISK_MPS, Pick, SLOW_MPS};
 use crate::parser::{Parser, says_nothing};
 use crate::token::{Mark, Sort};
 use socrates_model::{Gesture, PlaceClass};
@@ -84,7 +84,7 @@ impl Parser<'_> {
         let Some(chunk) = self.chunks.get(self.at) else { return };
         let obeys =
             clause.acts.last().is_some_and(|act| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.obeys));
-        clause.there |= chunk.word(Sort::There) && !clause.subject.is_empty();
+        clause.there |= chunk.word(Sort::There);
         if chunk.word(Sort::Do) {
             clause.does = Some(!clause.not);
         }
@@ -199,7 +199,8 @@ impl Parser<'_> {
                 Is::Mark(Mark::Comma) if quoted => {}
                 Is::Mark(_) => return None,
                 // `when she hears this she stops`
-                Is::Noun(noun) if noun.nominative && !quoted => return None,
+                // `asks to pass both of them make room`
+                Is::Noun(noun) if (noun.nominative || noun.pick == Pick::All) && !quoted => return None,
                 Is::Noun(_) => {}
                 Is::Word
                     if chunk.word(Sort::And)

@@ -53,7 +53,7 @@ impl Parser<'_> {
             if let Some(tie) = self.tie() {
                 let condition = self.condition(tie);
                 let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
-                let before = self.found.len() > first && (!apart || !more);
+                let before = self.found.len() > first && (!apart || !more || tie == Tie::Unless);
                 let own = self.found.get(first..).unwrap_or_default();
                 let acts = own.iter().rposition(|clause| !clause.acts.is_empty());
                 let clause = acts.filter(|_| !more).map(|at| first + at).or(self.found.len().checked_sub(1));
@@ -80,6 +80,15 @@ impl Parser<'_> {
                 self.at += 1;
             }
             clause.tokens.end = self.token().max(clause.tokens.end);
+            if self.is_condition(&clause, start, first) {
+                let condition = Condition { tie: Tie::When, clause };
+                if start > 0 && self.chunks.get(start - 1).is_some_and(|before| before.is_mark(Mark::Open)) {
+                    self.found.last_mut().into_iter().for_each(|last| last.conditions.push(condition.clone()));
+                } else {
+                    pending.push(condition);
+                }
+                continue;
+            }
             let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
             if clause.acts.is_empty() && clause.after_s.is_some() && more {
                 later = clause.after_s.take();
@@ -116,6 +125,20 @@ impl Parser<'_> {
         }
     }
 
+    /// `at 2 m he stops`, `he stops (robot within 2 m)`: a clause that tells no more than when another holds.
+    fn is_condition(&self, clause: &Clause, start: usize, first: usize) -> bool {
+        let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
+        let when = |act: &Predicate| frame(act).is_some_and(|frame| frame.plain && frame.robot_cue.is_some());
+        if clause.within_m.is_none() || clause.acts.is_empty() || !clause.acts.iter().all(when) {
+            return false;
+        }
+        let noun = self.peek().and_then(Chunk::noun).is_some_and(Noun::may_be_person);
+        let opened =
+            start.checked_sub(1).and_then(|at| self.chunks.get(at)).is_some_and(|chunk| chunk.is_mark(Mark::Open));
+        let of_robot = clause.subject.iter().all(|noun| noun.head == Head::Robot);
+        !clause.own && noun || opened && of_robot && self.found.len() > first
+    }
+
     /// `Coming towards the robot: a nurse`: what is said before its subject.
     pub(crate) fn front(&mut self, clause: &Clause, first: usize) {
         if clause.subject.is_empty() || clause.subject.iter().all(Noun::may_be_robot) {
@@ -132,7 +155,8 @@ impl Parser<'_> {
     pub(crate) fn adds(&mut self, clause: &Clause) -> bool {
         // `…, but only after it has stopped`
         let when = clause.acts.is_empty() && !clause.own && !clause.conditions.is_empty();
-        let amounts = when || clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
+        let way = clause.acts.is_empty() && !clause.own && clause.places.iter().any(|at| at.to);
+        let amounts = when || way || clause.lasts_s.is_some() || clause.within_m.is_some() || clause.after_s.is_some();
         let Some(last) = self.found.last_mut().filter(|last| amounts && !last.acts.is_empty()) else { return false };
         // A place, or where somebody goes, makes a clause of its own.
         if clause.acts.iter().any(|act| act.object.is_some() || act.sign.is_some()) {
@@ -155,7 +179,11 @@ impl Parser<'_> {
         let before = self.found.get(first..).and_then(<[Clause]>::last);
         let tells = !clause.conditions.is_empty() || clause.within_m.is_some() || clause.lasts_s.is_some();
         let other = clause.own && clause.subject.iter().all(|noun| noun.head == Head::Bare);
-        if let Some(before) = before.filter(|_| tells && other && clause.acts.is_empty() && clause.does.is_none()) {
+        // `first a nurse comes out, then a guest`
+        let bare = clause.places.is_empty() && clause.left.is_empty() && clause.looks.is_empty();
+        let next = clause.join == Join::Then && clause.own && bare && clause.subject.iter().all(names_somebody);
+        let same = tells && other || next;
+        if let Some(before) = before.filter(|_| same && clause.acts.is_empty() && clause.does.is_none()) {
             clause.acts.clone_from(&before.acts);
         }
     }
@@ -164,7 +192,10 @@ impl Parser<'_> {
     pub(crate) fn share(&self, clause: &mut Clause, first: usize) {
         let Some(before) = self.found.get(first..).and_then(<[Clause]>::last) else { return };
         let joined = clause.join == Join::And && clause.conditions.is_empty() && clause.after_s.is_none();
-        if joined && before.subject == clause.subject && !before.acts.is_empty() {
+        // `spots it, freezes`: freezes as he spots it.
+        let notices = before.acts.last().and_then(|act| self.lexicon.frames.get(act.row));
+        let notices = notices.is_some_and(|frame| frame.cue.is_some() && frame.act.is_none() && !frame.plain);
+        if joined && before.subject == clause.subject && !before.acts.is_empty() && !notices {
             clause.conditions.clone_from(&before.conditions);
             clause.conditions.retain(|condition| condition.tie != Tie::Until && condition.tie != Tie::While);
         }

@@ -51,6 +51,8 @@ pub enum Says<W> {
     Happens(PlaceClass, u8),
     /// It happens where the robot's way ends, unless another place is told.
     There,
+    /// What the robot's way leads past.
+    RobotVia(PlaceClass),
     /// Where the robot's way begins.
     RobotStart(PlaceClass),
     /// Where it ends.
@@ -128,7 +130,15 @@ pub(crate) type Named = Vec<Noun>;
 /// The statements of a text.
 pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement<Named>> {
     let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false, partly: false, asks: false };
-    for clause in clauses {
+    for (at, clause) in clauses.iter().enumerate() {
+        // `the one who crosses`: whoever was said to cross.
+        let relative = clauses.get(at + 1).filter(|next| next.subject.iter().all(|noun| noun.head == Head::Who));
+        let known_by = relative.and_then(|next| lexicon.frames.get(next.acts.first()?.row)?.relate);
+        let known = known_by.filter(|_| clause.acts.is_empty()).map(|_| {
+            let subject = clause.subject.iter().map(|noun| Noun { known_by, ..noun.clone() }).collect();
+            Clause { subject, ..clause.clone() }
+        });
+        let clause = known.as_ref().unwrap_or(clause);
         maker.first = clause.join == Join::Start;
         maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
         maker.asks = clause.asks;
@@ -268,7 +278,7 @@ impl Maker<'_> {
     fn times(&mut self, clause: &Clause) -> Times {
         let mut times = Times::default();
         let stays = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.denied.is_some());
-        let denied = clause.acts.iter().any(|act| act.not && !stays(act));
+        let denied = clause.acts.first().is_some_and(|act| act.not && !stays(act));
         for condition in &clause.conditions {
             let found = self.reason(condition, &clause.subject);
             self.introduce(&condition.clause);
@@ -307,7 +317,10 @@ impl Maker<'_> {
         let objects = clause.acts.iter().flat_map(|act| act.object.iter().chain(&act.owner));
         let named = objects.chain(&clause.subject).filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)));
         self.are_there(named.cloned().collect());
-        let tells = clause.acts.split_last().map_or(&[][..], |(_, before)| before);
+        // Of somebody who is new, what is waited for tells as well how they come.
+        let new = clause.subject.iter().all(|noun| matches!(noun.pick, Pick::Some | Pick::Another));
+        let before = clause.acts.split_last().map_or(&[][..], |(_, before)| before);
+        let tells = if new { &clause.acts[..] } else { before };
         let robot = clause.subject.iter().any(Noun::may_be_robot);
         for act in tells.iter().filter(|act| !robot && !act.not) {
             if let Some(relation) = self.lexicon.frames.get(act.row).and_then(|frame| frame.relate) {
@@ -431,11 +444,13 @@ impl Maker<'_> {
             self.say(tokens, Says::Do(deed));
             return;
         }
-        self.say(tokens.clone(), Says::Introduce(who));
+        self.say(tokens.clone(), Says::Introduce(who.clone()));
         if let Some(other) = other {
             self.say(tokens.clone(), Says::Introduce(other));
         }
-        if !frame.plain {
+        if frame.plain {
+            self.say(tokens, Says::Noted(who));
+        } else {
             self.say(tokens, Says::NotRead);
         }
     }
@@ -546,6 +561,14 @@ impl Maker<'_> {
             () if clause.subject.is_empty() => 2,
             () if robot => 1,
             () if clause.acts.is_empty() => 2,
+            // Whoever comes out of a room and crosses a corridor is met in the corridor.
+            () if clause
+                .acts
+                .iter()
+                .any(|act| frame(act).is_some_and(|frame| frame.relate == Some(Relation::Crossing))) =>
+            {
+                4
+            }
             () => 3,
         };
         for (number, At { class, to, from, via, tokens }) in clause.places.iter().enumerate() {
@@ -554,8 +577,9 @@ impl Maker<'_> {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
                 Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),
-                Some(_) if *via && (goes || part.is_some()) => {
-                    Says::NotPlayed("the robot takes its own way".to_owned())
+                Some(class) if *via && (goes || part.is_some()) => {
+                    self.say(tokens.0..tokens.1, Says::Happens(*class, 1));
+                    Says::RobotVia(*class)
                 }
                 Some(class) if part == Some(Part::Start) => Says::RobotStart(*class),
                 Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),

@@ -57,6 +57,8 @@ pub struct Story {
     pub robot_start: Option<PlaceClass>,
     /// Where it ends.
     pub robot_goal: Option<PlaceClass>,
+    /// What it leads past.
+    pub robot_via: Vec<PlaceClass>,
     /// Signs that the robot makes.
     pub robot_says: Vec<Gesture>,
 }
@@ -76,7 +78,9 @@ pub(crate) fn story(told: &Told) -> Story {
                 // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
                 let follows = *relation == Relation::Behind;
                 let stands = person.relation.is_none() || person.relation == Some(Relation::Static) && !follows;
-                if stands {
+                // Whoever comes out and crosses is met as they cross.
+                let crosses = person.relation == Some(Relation::Leaving) && *relation == Relation::Crossing;
+                if stands || crosses {
                     person.relation = Some(*relation);
                 }
                 person.side = side.or(person.side);
@@ -92,6 +96,7 @@ pub(crate) fn story(told: &Told) -> Story {
             Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => story.robot_sign(*gesture),
             Says::Happens(class, rank) if *rank > ranked => (story.place, ranked) = (Some(*class), *rank),
             Says::There => there = true,
+            Says::RobotVia(class) => story.robot_via.push(*class),
             Says::RobotStart(class) => story.robot_start = Some(*class),
             Says::RobotGoal(class) => story.robot_goal = Some(*class),
             Says::Group(_)
@@ -107,6 +112,13 @@ pub(crate) fn story(told: &Told) -> Story {
         }
     }
     story.without(&unsure(told));
+    // Whoever is in the robot's way from the start stands there.
+    for person in story.people.iter_mut().filter(|person| person.relation.is_none()) {
+        let blocks = |step: &&Step| step.act == Act::Block && step.when.is_empty();
+        if person.steps.first().as_ref().is_some_and(blocks) {
+            person.relation = Some(Relation::Static);
+        }
+    }
     // Of several, some of whom come out, those who stay are inside.
     if story.people.iter().any(|person| person.relation == Some(Relation::Leaving)) {
         for person in story.people.iter_mut().filter(|person| person.relation == Some(Relation::Static)) {
@@ -171,6 +183,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::RobotSays(..)
             | Says::Then(_)
             | Says::Happens(..)
+            | Says::RobotVia(_)
             | Says::There
             | Says::RobotStart(_)
             | Says::RobotGoal(_)
@@ -366,6 +379,9 @@ impl fmt::Display for Story {
             if let Some(class) = class {
                 writeln!(f, "robot: {what} {class}")?;
             }
+        }
+        for class in &self.robot_via {
+            writeln!(f, "robot: via {class}")?;
         }
         for gesture in &self.robot_says {
             writeln!(f, "robot: says {gesture}")?;

@@ -73,6 +73,15 @@ impl Parser<'_> {
     /// More subjects: `a doctor, a nurse and two visitors`.
     pub(crate) fn subject_list(&mut self, clause: &mut Clause) {
         loop {
+            // `a nurse from ward 4 and a doctor`
+            let from = self.peek().is_some_and(|chunk| chunk.word(Sort::From) || chunk.word(Sort::At));
+            let place = matches!(self.ahead(1).map(|chunk| &chunk.is), Some(Is::Place(_)));
+            let list = self.ahead(2).is_some_and(|chunk| chunk.word(Sort::And))
+                && self.ahead(3).and_then(Chunk::noun).is_some_and(names_somebody);
+            if from && place && list {
+                clause.looks.extend(self.ahead(1).into_iter().flat_map(|chunk| chunk.tokens.clone()));
+                self.at += 2;
+            }
             let comma = self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Comma));
             let and = self.peek().is_some_and(|chunk| chunk.word(Sort::And));
             let both = comma && self.ahead(1).is_some_and(|chunk| chunk.word(Sort::And));
