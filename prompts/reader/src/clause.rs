@@ -76,6 +76,9 @@ pub(crate) struct Measure {
     pub(crate) to: usize,
 }
 
+/// A heading has no more words than this.
+const HEADING: usize = 6;
+
 /// A clause.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Clause {
@@ -91,6 +94,8 @@ pub(crate) struct Clause {
     pub(crate) acts: Vec<Predicate>,
     /// Others who are named beside: `with her son`.
     pub(crate) also: Vec<Noun>,
+    /// Tokens that go with it: whose goal or way it is, what somebody is.
+    pub(crate) goes: Vec<Range<usize>>,
     /// By whom, in the passive.
     pub(crate) agent: Option<Noun>,
     /// Whether its subjects are a group.
@@ -124,6 +129,7 @@ impl Clause {
             subject: Vec::new(),
             acts: Vec::new(),
             also: Vec::new(),
+            goes: Vec::new(),
             agent: None,
             group: false,
             there: false,
@@ -145,6 +151,16 @@ impl Clause {
     pub(crate) fn is_turned(&self) -> bool {
         let alone = matches!(self.acts[..], [Predicate { object: None, sign: None, .. }]);
         alone && !self.own && matches!(self.join, Join::Start)
+    }
+
+    /// Whether it names a text, and tells of nobody and nothing: a few words of which nothing is known.
+    pub(crate) fn is_heading(&self) -> bool {
+        let silent = self.subject.is_empty() && self.acts.is_empty() && self.also.is_empty() && self.places.is_empty();
+        silent
+            && !self.left.is_empty()
+            && self.conditions.is_empty()
+            && self.denials.is_empty()
+            && self.left.len() <= HEADING
     }
 
     pub(crate) fn is_bare(&self) -> bool {

@@ -200,6 +200,16 @@ impl Reader<'_> {
         let role = self.noun();
         self.deep = false;
         // Not of a list: `Maria, a nurse and a guest`, `Maria, a nurse, a guest and the robot`.
+        // `a nurse on ward 7, …`
+        let closing = |token: &Token| token.is_mark(Mark::Comma) || token.is_mark(Mark::Close);
+        let of = self.peek().is_some_and(|token| token.is(Sort::At) || token.is(Sort::Of) || token.is(Sort::From));
+        let end = (self.at..self.at + 6).find(|at| self.tokens.get(*at).is_some_and(closing));
+        if let Some(end) = end.filter(|_| of) {
+            let said = self.tokens.get(self.at..end).unwrap_or_default();
+            if !said.iter().any(|token| token.bent != Bent::Base || !token.is_said()) {
+                self.at = end;
+            }
+        }
         let closes = self
             .peek()
             .is_none_or(|token| token.is_mark(Mark::Close) || token.is_mark(Mark::Comma) || token.is_mark(Mark::Dash));
@@ -280,7 +290,10 @@ impl Reader<'_> {
             } else if let Some(ordinal) = words.ordinals.get(&token.lemma).filter(|_| {
                 noun.pick != Pick::Plain
                     || self.at > start
-                    || self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People))
+                    || self
+                        .tokens
+                        .get(self.at + 1)
+                        .is_some_and(|next| next.is(Sort::Role) || next.is(Sort::People) || next.lemma == "one")
             }) {
                 noun.ordinal = Some(*ordinal);
             } else if token.is(Sort::Number)

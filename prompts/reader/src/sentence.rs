@@ -198,6 +198,10 @@ impl Parser<'_> {
         if joined && before.subject == clause.subject && !before.acts.is_empty() && !notices {
             clause.conditions.clone_from(&before.conditions);
             clause.conditions.retain(|condition| condition.tie != Tie::Until && condition.tie != Tie::While);
+            let acts = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.act.is_some());
+            if !before.acts.iter().any(acts) {
+                clause.after_s = before.after_s;
+            }
         }
     }
 
@@ -287,7 +291,10 @@ impl Parser<'_> {
                     let noun = noun.clone();
                     self.noun(noun, inner, &mut clause);
                 }
-                Is::Whose(_) | Is::Mark(_) => self.at += 1,
+                Is::Whose(_) | Is::Mark(_) => {
+                    clause.goes.push(chunk.tokens.clone());
+                    self.at += 1;
+                }
                 Is::Amount(amount) => {
                     let amount = *amount;
                     if !self.framed(&mut clause) {

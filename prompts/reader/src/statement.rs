@@ -142,6 +142,12 @@ pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement
         maker.first = clause.join == Join::Start;
         maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
         maker.asks = clause.asks;
+        // `Regression for bug 371: …`
+        let heads = at == 0 || clauses.get(at + 1).is_some_and(|next| next.join == Join::Colon);
+        if heads && clause.is_heading() {
+            maker.say(clause.tokens.clone(), Says::Background(Background::Comment));
+            continue;
+        }
         maker.clause(clause);
     }
     maker.found
@@ -258,6 +264,9 @@ impl Maker<'_> {
         if any {
             self.nouns_go(&clause.subject);
             self.nouns_go(clause.agent.as_slice());
+            for tokens in &clause.goes {
+                self.goes(tokens.clone());
+            }
         }
         if done || then || met {
             for tokens in used {
@@ -379,9 +388,8 @@ impl Maker<'_> {
             (clause.subject.clone(), act.object.clone())
         };
         if who.is_empty() {
-            if !frame.plain {
-                self.say(tokens, Says::NotRead);
-            }
+            let says = if frame.plain { Says::Goes } else { Says::NotRead };
+            self.say(tokens, says);
             return;
         }
         let about_robot = object.as_ref().is_none_or(|object| {

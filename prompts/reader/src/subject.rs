@@ -27,6 +27,7 @@ impl Parser<'_> {
             clause.own = true;
         } else if let (true, Some(role)) = (clause.acts.is_empty() && is, role_of(&noun)) {
             // `he is one of our pickers`
+            clause.goes.push(noun.tokens.clone());
             for own in &mut clause.subject {
                 own.beside = Some(role.clone());
             }
