@@ -99,6 +99,7 @@ impl Fate {
             | Says::Goes
             | Says::Happens(..)
             | Says::There
+            | Says::GoalThere
             | Says::RobotVia(_)
             | Says::RobotStart(_)
             | Says::RobotGoal(_) => (Self::Read, 1),

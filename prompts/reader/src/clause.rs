@@ -49,6 +49,8 @@ pub(crate) struct Predicate {
     pub(crate) not: bool,
     /// Whether the subject is the one to whom it is done.
     pub(crate) passive: bool,
+    /// Whether it goes on from the start: `is standing`.
+    pub(crate) ongoing: bool,
     /// What is asked for, or said.
     pub(crate) sign: Option<Gesture>,
     pub(crate) tokens: Range<usize>,
@@ -149,8 +151,8 @@ impl Clause {
 
     /// Whether its subject may follow: `in the corridor stands a nurse`.
     pub(crate) fn is_turned(&self) -> bool {
-        let alone = matches!(self.acts[..], [Predicate { object: None, sign: None, .. }]);
-        alone && !self.own && matches!(self.join, Join::Start)
+        let alone = |act: &Predicate| act.object.is_none() && act.sign.is_none();
+        !self.acts.is_empty() && self.acts.iter().all(alone) && !self.own && matches!(self.join, Join::Start)
     }
 
     /// Whether it names a text, and tells of nobody and nothing: a few words of which nothing is known.

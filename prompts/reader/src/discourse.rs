@@ -181,6 +181,7 @@ impl Cast {
             }
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,
+            Says::GoalThere => Says::GoalThere,
             Says::RobotVia(class) => Says::RobotVia(*class),
             Says::RobotStart(class) => Says::RobotStart(*class),
             Says::RobotGoal(class) => Says::RobotGoal(*class),
@@ -192,7 +193,14 @@ impl Cast {
     }
 
     fn reason(&mut self, reason: &Reason<Named>) -> Reason<People> {
-        let mut who = reason.who.as_ref().map(|who| self.people(who));
+        // `as soon as she has said so`: whoever made the sign.
+        let pronoun = |who: &Named| who.iter().all(|noun| matches!(noun.head, Head::He | Head::They));
+        let signer = self.signed.as_ref().map(|(signer, _)| signer.clone());
+        let same = reason.cue == Cue::Says && reason.sign.is_none() && reason.who.as_ref().is_some_and(pronoun);
+        let mut who = match signer.filter(|_| same) {
+            Some(signer) => Some(signer),
+            None => reason.who.as_ref().map(|who| self.people(who)),
+        };
         let mut sign = reason.sign;
         if reason.cue == Cue::Says && sign.is_some() {
             self.asked = sign;
@@ -222,7 +230,7 @@ impl Cast {
         });
         let mut when: Vec<Reason<People>> = deed.when.iter().map(|reason| self.reason(reason)).collect();
         let until: Vec<Reason<People>> = deed.until.iter().map(|reason| self.reason(reason)).collect();
-        if when.is_empty() && !deed.not {
+        if when.is_empty() && !deed.not && !deed.ongoing {
             when = match &self.signed {
                 Some((signer, reason)) if signer.iter().all(|signer| !who.contains(signer)) => vec![reason.clone()],
                 _ => self.pending.clone(),
@@ -268,7 +276,9 @@ impl Cast {
             // What comes then comes after what was waited for.
             self.pending.clone_from(&until);
         }
-        let deed = Deed { who, act, whom, not: deed.not, when, until, for_s: deed.for_s, says, obeys: deed.obeys };
+        let ongoing = deed.ongoing;
+        let deed =
+            Deed { ongoing, who, act, whom, not: deed.not, when, until, for_s: deed.for_s, says, obeys: deed.obeys };
         self.done = Some(deed.clone());
         deed
     }

@@ -148,6 +148,7 @@ impl fmt::Display for Shown<'_> {
             Says::Then(reason) => write!(f, "then {:?}", reason.cue),
             Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),
             Says::There => f.write_str("happens there"),
+            Says::GoalThere => f.write_str("robot goes there"),
             Says::RobotVia(class) => write!(f, "robot goes via {class}"),
             Says::RobotStart(class) => write!(f, "robot starts {class}"),
             Says::RobotGoal(class) => write!(f, "robot goes {class}"),

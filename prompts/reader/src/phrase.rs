@@ -99,7 +99,13 @@ impl Reader<'_> {
     /// `he`, `it`, `someone`, `her` where no noun follows.
     fn pronoun(&mut self) -> Option<Noun> {
         let token = self.peek()?;
-        let owns = token.is(Sort::Possessive) && self.tokens.get(self.at + 1).is_some_and(Self::can_be_owned);
+        let next = self.tokens.get(self.at + 1);
+        // `lets her go first`
+        let lets =
+            self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Lets));
+        let does =
+            lets && next.is_some_and(|next| next.is(Sort::Verb) && next.bent == Bent::Base && !next.is(Sort::Empty));
+        let owns = token.is(Sort::Possessive) && next.is_some_and(Self::can_be_owned) && !does;
         let head = match () {
             () if token.is(Sort::He) && !owns => Head::He,
             () if token.is(Sort::They) => Head::They,
@@ -458,8 +464,9 @@ impl Reader<'_> {
     fn group(&mut self, noun: &mut Noun) -> bool {
         // `in two groups of three` tells how they stand.
         let start = noun.tokens.start;
-        let stand = start.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.lemma == "in");
-        if stand && noun.count.is_some_and(|count| count > 1) {
+        let stand =
+            start.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Forms));
+        if stand {
             return false;
         }
         let own = self.peek().and_then(|token| match token.lemma.as_str() {

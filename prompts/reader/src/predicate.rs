@@ -5,7 +5,7 @@ use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
 use crate::noun::{BRISK_MPS, Pick, SLOW_MPS};
 use crate::parser::{Parser, says_nothing};
-use crate::token::{Mark, Sort};
+use crate::token::{Bent, Mark, Sort};
 use socrates_model::{Gesture, PlaceClass};
 
 impl Parser<'_> {
@@ -17,6 +17,13 @@ impl Parser<'_> {
         let longer =
             |found: &Found| longest(self.chunks, self.at + 1, patterns).is_some_and(|inner| inner.end > found.end);
         let found = longest(self.chunks, self.at, patterns).filter(|found| !denies || !longer(found));
+        // `start` alone is a part of the robot's way where it stands before one: `start: the ward`.
+        let label = |found: &Found| {
+            let part = self.lexicon.frames.get(found.row).is_some_and(|frame| frame.part.is_some() && !frame.goes);
+            let marked = self.chunks.get(found.end).is_some_and(|next| next.is_mark(Mark::Colon));
+            !part || found.place.is_some() || found.end > self.at + 1 || marked
+        };
+        let found = found.filter(label);
         let matches = found.is_some();
         if let Some(found) = found {
             self.predicate(found, clause);
@@ -118,12 +125,23 @@ impl Parser<'_> {
         let sign = self.lexicon.signs.get(found.row).map(|row| row.says);
         self.at = found.end;
         let tokens = start..self.token();
-        clause.acts.push(Predicate { row, object: None, owner: None, not: false, passive: false, sign, tokens });
+        clause.acts.push(Predicate {
+            row,
+            object: None,
+            owner: None,
+            not: false,
+            passive: false,
+            ongoing: false,
+            sign,
+            tokens,
+        });
         true
     }
 
     fn predicate(&mut self, found: Found, clause: &mut Clause) {
         let start = self.token();
+        let be = self.before().is_some_and(|before| before.word(Sort::Be));
+        let ongoing = be && self.peek().is_some_and(|chunk| chunk.bent == Bent::Ing);
         for between in &found.between {
             let Some(chunk) = self.chunks.get(*between) else { continue };
             if chunk.word(Sort::Slow) {
@@ -136,7 +154,7 @@ impl Parser<'_> {
             let own = verb.word(Sort::Slow).then_some(SLOW_MPS).or(verb.word(Sort::Brisk).then_some(BRISK_MPS));
             clause.pace_mps = own.map(|mps| pace(mps, verb)).or(clause.pace_mps);
         }
-        let passive = found.passive && self.at > 0;
+        let passive = found.passive;
         self.at = found.end;
         if let Some((amount, at)) = found.amount {
             let measure = Some(self.measure(amount, at));
@@ -168,7 +186,8 @@ impl Parser<'_> {
             return;
         }
         let tokens = start..self.token();
-        let act = Predicate { row: found.row, object, owner: found.owner, not: clause.not, passive, sign, tokens };
+        let act =
+            Predicate { ongoing, row: found.row, object, owner: found.owner, not: clause.not, passive, sign, tokens };
         clause.acts.push(act);
     }
 

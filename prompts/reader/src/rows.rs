@@ -83,6 +83,8 @@ pub(crate) enum Part {
     Start,
     /// Where it ends.
     Goal,
+    /// It ends in the room or car of which is spoken: `wants to get in`.
+    There,
 }
 
 /// A row of `frames.toml`: a verb with what belongs to it, or another phrase that says how somebody moves.

@@ -55,7 +55,7 @@ impl Parser<'_> {
                 let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
                 let before = self.found.len() > first && (!apart || !more || tie == Tie::Unless);
                 let own = self.found.get(first..).unwrap_or_default();
-                let acts = own.iter().rposition(|clause| !clause.acts.is_empty());
+                let acts = own.iter().rposition(|clause| !clause.acts.is_empty() || clause.does.is_some());
                 let clause = acts.filter(|_| !more).map(|at| first + at).or(self.found.len().checked_sub(1));
                 match clause.and_then(|at| self.found.get_mut(at)).filter(|_| before) {
                     Some(clause) => clause.conditions.push(condition),
@@ -182,7 +182,12 @@ impl Parser<'_> {
         // `first a nurse comes out, then a guest`
         let bare = clause.places.is_empty() && clause.left.is_empty() && clause.looks.is_empty();
         let next = clause.join == Join::Then && clause.own && bare && clause.subject.iter().all(names_somebody);
-        let same = tells && other || next;
+        // `robot goal: the exit`
+        let part = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.part.is_some());
+        let part = !clause.own
+            && !clause.places.is_empty()
+            && before.is_some_and(|before| before.acts.iter().any(part) && before.places.is_empty());
+        let same = tells && other || next || part;
         if let Some(before) = before.filter(|_| same && clause.acts.is_empty() && clause.does.is_none()) {
             clause.acts.clone_from(&before.acts);
         }
@@ -405,7 +410,8 @@ impl Parser<'_> {
                 complete && !by && !turned && noun.tokens.start > 0
             }
             Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::Or) => true,
-            Is::Word if chunk.word(Sort::Then) => true,
+            // `the robot then asks` is one clause.
+            Is::Word if chunk.word(Sort::Then) => !(clause.own && clause.is_bare()),
             Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {
                 !clause.is_bare() || !clause.subject.is_empty()
             }

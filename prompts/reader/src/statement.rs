@@ -13,6 +13,7 @@ use socrates_model::{Gesture, PlaceClass, Relation, Side};
 use crate::clause::{At, Clause, Condition, Join, Predicate, Tie};
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun, Pick};
+use crate::parser::names_somebody;
 use crate::rows::{Act, Cue, Frame, Part};
 
 /// Why somebody begins or ends something.
@@ -51,6 +52,8 @@ pub enum Says<W> {
     Happens(PlaceClass, u8),
     /// It happens where the robot's way ends, unless another place is told.
     There,
+    /// The robot's way ends in the room or car of which is spoken.
+    GoalThere,
     /// What the robot's way leads past.
     RobotVia(PlaceClass),
     /// Where the robot's way begins.
@@ -86,6 +89,8 @@ pub struct Deed<W> {
     pub for_s: Option<f64>,
     /// A sign made with it.
     pub says: Option<Gesture>,
+    /// Whether it goes on from the start, whatever else happens: `is standing`.
+    pub ongoing: bool,
     /// Whether it is what was asked for just before: `does so`.
     pub obeys: bool,
 }
@@ -98,6 +103,7 @@ impl<W> Deed<W> {
             act,
             whom: None,
             not: false,
+            ongoing: false,
             when: Vec::new(),
             until: Vec::new(),
             for_s: None,
@@ -181,12 +187,26 @@ impl Maker<'_> {
         }
     }
 
+    /// `an oncoming nurse`: a word before the role that says how they move.
+    fn modified(&mut self, nouns: &[Noun]) {
+        for noun in nouns {
+            let rows = noun.modifiers.iter().filter_map(|word| {
+                let pattern = self.lexicon.frame_patterns.beginning(word).find(|pattern| pattern.slots.len() == 1)?;
+                self.lexicon.frames.get(pattern.row)?.relate
+            });
+            if let Some(relation) = rows.last() {
+                self.say(noun.tokens.clone(), Says::Relate(vec![noun.clone()], Some(relation), None));
+            }
+        }
+    }
+
     /// Some people are there.
     fn are_there(&mut self, nouns: Named) {
         self.nouns_go(nouns.get(1..).unwrap_or_default());
         if let Some(tokens) = nouns.first().map(|noun| noun.tokens.clone()) {
-            self.say(tokens, Says::Introduce(nouns));
+            self.say(tokens, Says::Introduce(nouns.clone()));
         }
+        self.modified(&nouns);
     }
 
     fn clause(&mut self, clause: &Clause) {
@@ -288,6 +308,15 @@ impl Maker<'_> {
         let mut times = Times::default();
         let stays = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.denied.is_some());
         let denied = clause.acts.first().is_some_and(|act| act.not && !stays(act));
+        // `stops on sight of the robot`
+        let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
+        let done = clause.acts.iter().position(|act| frame(act).is_some_and(|frame| frame.act.is_some()));
+        for act in clause.acts.iter().skip(done.map_or(clause.acts.len(), |done| done + 1)).filter(|act| !act.not) {
+            let cue = frame(act).filter(|frame| !frame.plain && frame.act.is_none() && frame.relate.is_none());
+            if let Some(cue) = cue.and_then(|frame| frame.cue).filter(|_| act.sign.is_none()) {
+                times.when.push(Reason { who: None, cue, sign: None, amount: clause.within_m.map(|m| m.value) });
+            }
+        }
         for condition in &clause.conditions {
             let found = self.reason(condition, &clause.subject);
             self.introduce(&condition.clause);
@@ -298,8 +327,8 @@ impl Maker<'_> {
             }
             let (reason, tokens) = found.map_or((None, Vec::new()), |(reason, tokens)| (Some(reason), tokens));
             // Whoever is waited for makes the sign.
-            if let Some(Reason { who: Some(who), cue: Cue::Says, sign, .. }) = &reason {
-                let deed = Deed { says: *sign, ..Deed::of(who.clone(), Act::Sign) };
+            if let Some(Reason { who: Some(who), cue: Cue::Says, sign: Some(sign), .. }) = &reason {
+                let deed = Deed { says: Some(*sign), ..Deed::of(who.clone(), Act::Sign) };
                 self.say(condition.clause.tokens.clone(), Says::Do(deed));
             }
             match (reason, condition.tie) {
@@ -393,7 +422,10 @@ impl Maker<'_> {
             return;
         }
         let about_robot = object.as_ref().is_none_or(|object| {
-            !matches!(object.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::Who)
+            // `towards the two of them`: the robot is one of them.
+            let of_them = object.head == Head::Bare && object.of.as_ref().is_some_and(|of| of.head == Head::They);
+            of_them && frame.relate.is_some()
+                || !matches!(object.head, Head::Role(_) | Head::Name(_) | Head::Bare | Head::He | Head::Who)
         });
         if !about_robot && act.sign.is_none() {
             let other = object.clone().map(|noun| vec![noun]);
@@ -494,7 +526,10 @@ impl Maker<'_> {
             (Some(relation), Some(person)) if !act.not => {
                 self.say(tokens.clone(), Says::Relate(person, Some(relation), None))
             }
-            (_, Some(person)) => self.say(tokens.clone(), Says::Introduce(person)),
+            (_, Some(person)) => {
+                self.say(tokens.clone(), Says::Introduce(person.clone()));
+                self.modified(&person);
+            }
             (_, None) => {}
         }
         if let Some(cue) = cue {
@@ -513,6 +548,16 @@ impl Maker<'_> {
             clause.subject.iter().chain(&clause.agent).map(|noun| noun.tokens.clone()).collect();
         tokens.extend(clause.within_m.map(|m| m.from..m.to));
         tokens.push(clause.tokens.start..clause.tokens.start + 1);
+        // `when the visitor hears the nurse say that`: when she says it.
+        let hears = |act: &&Predicate| {
+            self.lexicon.frames.get(act.row).is_some_and(|frame| frame.cue == Some(Cue::Says) && !frame.asks)
+        };
+        if let Some(hears) = clause.acts.iter().find(hears).filter(|_| !robot) {
+            let who = hears.object.clone().filter(names_somebody).map(|noun| vec![noun]);
+            let sign = clause.acts.iter().find_map(|act| act.sign);
+            tokens.extend(clause.acts.iter().map(|act| act.tokens.clone()));
+            return Some((Reason { who, cue: Cue::Says, sign, ..none }, tokens));
+        }
         // Of several acts the last is waited for: those before it tell who.
         for act in clause.acts.iter().rev() {
             let frame = self.lexicon.frames.get(act.row)?;
@@ -563,6 +608,10 @@ impl Maker<'_> {
                         .acts
                         .iter()
                         .any(|act| frame(act).is_some_and(|frame| frame.goes || frame.part.is_some())));
+        let there = |act: &&Predicate| !act.not && frame(act).is_some_and(|frame| frame.part == Some(Part::There));
+        if let Some(act) = clause.acts.iter().find(there).filter(|_| robot && clause.places.is_empty()) {
+            self.say(act.tokens.clone(), Says::GoalThere);
+        }
         let robot = robot || clause.subject.is_empty();
         let part = clause.acts.iter().filter(|act| robot && !act.not).find_map(|act| frame(act)?.part);
         let rank = match () {
@@ -650,7 +699,9 @@ impl Whole<'_> {
         let not = (said.not || none) && !self.turned && (frame.denied.is_none() || none);
         let whom = None;
         let until = self.until.to_vec();
+        let ongoing = said.ongoing;
         Deed {
+            ongoing,
             who,
             act,
             whom,

@@ -67,8 +67,12 @@ pub struct Story {
 pub(crate) fn story(told: &Told) -> Story {
     let people = told.roles.iter().map(|role| Person { role: role.clone(), ..Person::default() }).collect();
     let mut story = Story { people, ..Story::default() };
-    let (mut groups, mut ranked, mut there) = (0, 0, false);
+    let (mut groups, mut ranked, mut there, mut goal_there) = (0, 0, false, false);
+    let mut closed = None;
     for statement in &told.statements {
+        if let Says::Happens(class @ (PlaceClass::Elevator | PlaceClass::Room), _) = &statement.says {
+            closed = Some(*class);
+        }
         match &statement.says {
             Says::Relate(who, relation, side) => story.each(who, |person| {
                 let Some(relation) = relation else {
@@ -96,6 +100,7 @@ pub(crate) fn story(told: &Told) -> Story {
             Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => story.robot_sign(*gesture),
             Says::Happens(class, rank) if *rank > ranked => (story.place, ranked) = (Some(*class), *rank),
             Says::There => there = true,
+            Says::GoalThere => goal_there = true,
             Says::RobotVia(class) => story.robot_via.push(*class),
             Says::RobotStart(class) => story.robot_start = Some(*class),
             Says::RobotGoal(class) => story.robot_goal = Some(*class),
@@ -110,6 +115,9 @@ pub(crate) fn story(told: &Told) -> Story {
             | Says::Goes
             | Says::NotRead => {}
         }
+    }
+    if goal_there && story.robot_goal.is_none() {
+        story.robot_goal = closed;
     }
     story.without(&unsure(told));
     // Whoever is in the robot's way from the start stands there.
@@ -184,6 +192,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::Then(_)
             | Says::Happens(..)
             | Says::RobotVia(_)
+            | Says::GoalThere
             | Says::There
             | Says::RobotStart(_)
             | Says::RobotGoal(_)

@@ -64,6 +64,7 @@ impl Parser<'_> {
                     owner: None,
                     not: false,
                     passive: false,
+                    ongoing: false,
                     sign: None,
                     tokens,
                 });

@@ -72,6 +72,10 @@ pub(crate) enum Sort {
     Label,
     /// A role towards others: `colleague`.
     Mate,
+    /// Before what somebody is let do: `lets her go`.
+    Lets,
+    /// Before a word for a group that tells how people stand: `in a group`, `form a pair`.
+    Forms,
     /// Where was spoken of: `there`.
     There,
     /// A role that can be seen of anybody: `boy`.
