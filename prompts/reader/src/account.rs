@@ -9,8 +9,8 @@ use std::ops::Range;
 use socrates_model::statement::Background;
 use unicode_segmentation::UnicodeSegmentation as _;
 
+use crate::cast::People;
 use crate::clause::Clause;
-use crate::discourse::People;
 use crate::normalize::Scene;
 use crate::statement::{Says, Statement};
 use crate::story::Story;

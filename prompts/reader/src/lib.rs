@@ -26,6 +26,8 @@ mod lex;
 mod normalize;
 
 mod noun;
+
+mod name;
 mod phrase;
 
 mod chunk;
@@ -39,6 +41,12 @@ mod subject;
 
 mod statement;
 
+mod maker;
+mod times;
+
+mod clause_says;
+
+mod cast;
 mod discourse;
 
 mod story;
@@ -50,7 +58,7 @@ mod passes;
 mod examples;
 
 pub use account::{Fate, Piece, Read, Verdict};
-pub use discourse::People;
+pub use cast::People;
 pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};
 pub use passes::Passes;

@@ -5,11 +5,12 @@ use std::fmt;
 use crate::account::{Fate, Read, account};
 use crate::chunk::{Chunk, chunks};
 use crate::clause::Clause;
+use crate::clause_says::statements;
 use crate::discourse::{Told, told};
 use crate::lexicon::Lexicon;
 use crate::normalize::{Scene, normalize};
 use crate::sentence::clauses;
-use crate::statement::{Named, Says, Statement, statements};
+use crate::statement::{Named, Says, Statement};
 use crate::story::{Story, story};
 use crate::token::Token;
 

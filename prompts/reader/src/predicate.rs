@@ -19,7 +19,11 @@ impl Parser<'_> {
         let found = longest(self.chunks, self.at, patterns).filter(|found| !denies || !longer(found));
         // `start` alone is a part of the robot's way where it stands before one: `start: the ward`.
         let label = |found: &Found| {
-            let part = self.lexicon.frames.get(found.row).is_some_and(|frame| frame.part.is_some() && !frame.goes);
+            let part = self
+                .lexicon
+                .frames
+                .get(found.row)
+                .is_some_and(|frame| frame.part.is_some() && !frame.goes && frame.relate.is_none());
             let marked = self.chunks.get(found.end).is_some_and(|next| next.is_mark(Mark::Colon));
             !part || found.place.is_some() || found.end > self.at + 1 || marked
         };
@@ -151,7 +155,7 @@ impl Parser<'_> {
             }
         }
         if let Some(verb) = self.peek() {
-            let own = verb.word(Sort::Slow).then_some(SLOW_MPS).or(verb.word(Sort::Brisk).then_some(BRISK_MPS));
+            let own = verb.word(Sort::Slow).then_some(SLOW_MPS).or_else(|| verb.word(Sort::Brisk).then_some(BRISK_MPS));
             clause.pace_mps = own.map(|mps| pace(mps, verb)).or(clause.pace_mps);
         }
         let passive = found.passive;

@@ -56,7 +56,7 @@ impl Parser<'_> {
                 let before = self.found.len() > first && (!apart || !more || tie == Tie::Unless);
                 let own = self.found.get(first..).unwrap_or_default();
                 let acts = own.iter().rposition(|clause| !clause.acts.is_empty() || clause.does.is_some());
-                let clause = acts.filter(|_| !more).map(|at| first + at).or(self.found.len().checked_sub(1));
+                let clause = acts.filter(|_| !more).map(|at| first + at).or_else(|| self.found.len().checked_sub(1));
                 match clause.and_then(|at| self.found.get_mut(at)).filter(|_| before) {
                     Some(clause) => clause.conditions.push(condition),
                     None => {

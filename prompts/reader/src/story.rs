@@ -5,7 +5,8 @@ use std::fmt;
 use socrates_model::form::{Deed as FormDeed, Form, FormGroup, FormHuman, Pace, PlaceWord, Step as FormStep, When};
 use socrates_model::{Gesture, PlaceClass, Relation, Side};
 
-use crate::discourse::{People, Told};
+use crate::cast::People;
+use crate::discourse::Told;
 use crate::rows::{Act, Cue};
 use crate::statement::{Deed, Reason, Says};
 
