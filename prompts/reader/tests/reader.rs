@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use socrates_reader::{Example, Fate, Files, Reader, SHIPPED};
+use socrates_reader::{Example, Fate, Files, Reader, SHIPPED, Verdict};
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -68,7 +68,7 @@ fn no_act_of_any_clause_vanishes() {
 }
 
 #[test]
-fn pieces_stand_in_the_text_and_in_its_order() {
+fn every_word_lies_in_one_piece_and_pieces_stand_in_the_order_of_the_text() {
     let reader = Reader::shipped();
     for text in texts() {
         let read = reader.read(&text);
@@ -76,7 +76,94 @@ fn pieces_stand_in_the_text_and_in_its_order() {
             read.pieces.iter().all(|piece| text.get(piece.at.clone()).is_some_and(|words| !words.is_empty())),
             "{text}"
         );
-        assert!(read.pieces.is_sorted_by_key(|piece| piece.at.start), "{text}");
+        let apart = read.pieces.windows(2).all(|two| two[0].at.end <= two[1].at.start);
+        assert!(apart, "{text}: {:?}", read.pieces);
+        // A word with its apostrophe may be two: `it's`.
+        for (at, letter) in text.char_indices().filter(|(_, letter)| letter.is_alphanumeric()) {
+            let behind = read.pieces.partition_point(|piece| piece.at.end <= at);
+            let of = read.pieces.get(behind).is_some_and(|piece| piece.at.start <= at);
+            assert!(of, "`{letter}` at {at} of “{text}”: {:?}", read.pieces);
+        }
+    }
+}
+
+/// The words of a text that are said to be not read.
+fn not_read(text: &str) -> Vec<&str> {
+    let read = socrates_reader::read(text);
+    let lost = read.pieces.into_iter().filter(|piece| piece.fate == Fate::NotRead);
+    lost.map(|piece| text.get(piece.at).unwrap()).collect()
+}
+
+#[test]
+fn what_goes_into_no_statement_is_said_to_be_not_read() {
+    for (text, lost) in [
+        // How long somebody stands who does nothing else is in no form.
+        ("A nurse stands in the corridor for 10 s.", vec!["10 s"]),
+        // A reason for nothing that could be done at once.
+        ("When the robot has yodeled, a nurse steps aside.", vec!["When the robot has yodeled"]),
+        // Whoever is named, and of whom nothing is told.
+        ("A nurse crosses the corridor with a juggler.", vec!["juggler"]),
+        ("A nurse steps aside at 2 m.", vec![]),
+        ("A nurse never blocks the robot.", vec![]),
+    ] {
+        assert_eq!(not_read(text), lost, "{text}");
+    }
+}
+
+#[test]
+fn a_clause_may_be_read_in_part() {
+    let text = "A nurse yodels in the corridor. She stops when she sees the robot. The weather yodels.";
+    let verdicts: Vec<Verdict> =
+        socrates_reader::read(text).verdicts().into_iter().map(|(_, verdict)| verdict).collect();
+    assert!(
+        matches!(&verdicts[0], Verdict::Partly(lost) if text.get(lost[0].clone()) == Some("yodels")),
+        "{verdicts:?}"
+    );
+    assert_eq!(verdicts[1], Verdict::Read);
+    assert_eq!(verdicts[2], Verdict::NotRead);
+}
+
+#[test]
+fn people_are_counted() {
+    for (text, people) in [
+        ("Two nurses and a guest walk towards the robot.", 3),
+        ("Three visitors stand in the corridor, no, two.", 2),
+        ("There are four, sorry, five visitors in the corridor.", 5),
+        ("Three people come out: a nurse and two guests.", 3),
+        ("A couple, a woman and her husband, walk towards the robot.", 2),
+        ("Maria, a young nurse, walks towards the robot and stops.", 1),
+        ("Two porters stand there. The first stops, his colleague walks on.", 2),
+        ("People block robots. A nurse crosses the corridor.", 1),
+        ("Could I have a person? A nurse walks towards the robot.", 1),
+        ("A mother and her son walk towards the robot. The boy stops.", 2),
+        ("One visitor runs away. The other stops.", 2),
+        ("At the junction an old man stops, a nurse a few steps behind him.", 2),
+        ("Around a quarter to eight a nurse crosses the corridor.", 1),
+        ("Half a dozen visitors stand there.", 6),
+    ] {
+        let story = socrates_reader::read(text).story;
+        assert_eq!(story.people.len(), people, "{text}\n{story}");
+    }
+}
+
+#[test]
+fn of_several_those_act_who_are_meant() {
+    for (text, who) in [
+        ("Three visitors stand there. All but the last step aside.", vec![1, 2]),
+        ("Three visitors stand there. All but one step aside.", vec![1, 2]),
+        ("Three visitors stand there. The second steps aside.", vec![2]),
+        (
+            "Two visitors come. One crosses, the other walks ahead of the robot. The one who crosses steps aside.",
+            vec![1],
+        ),
+        ("Two visitors come. The first stops at 3 m. None of them steps aside.", vec![]),
+    ] {
+        let story = socrates_reader::read(text).story;
+        let steps_aside =
+            |person: &socrates_reader::Person| person.steps.iter().any(|step| step.act.name() == "give_way");
+        let found: Vec<usize> =
+            story.people.iter().enumerate().filter(|(_, person)| steps_aside(person)).map(|(at, _)| at + 1).collect();
+        assert_eq!(found, who, "{text}\n{story}");
     }
 }
 
