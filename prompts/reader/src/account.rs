@@ -13,7 +13,7 @@ use crate::cast::People;
 use crate::clause::Clause;
 use crate::normalize::Scene;
 use crate::statement::{Says, Statement};
-use crate::story::Story;
+use crate::story::{Line, Story};
 
 /// What became of a piece of a text.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +57,8 @@ pub struct Read {
     pub story: Story,
     /// What became of every piece of the text: in its order, apart from each other, and every word in one of them.
     pub pieces: Vec<Piece>,
+    /// What the text says of the story, in its order, each with the words that say it, in bytes.
+    pub lines: Vec<(Line, Range<usize>)>,
 }
 
 impl Read {

@@ -114,6 +114,8 @@ pub(crate) struct Clause {
     pub(crate) conditions: Vec<Condition>,
     /// Tokens of words that deny: `not`, `refuses to`.
     pub(crate) denials: Vec<Range<usize>>,
+    /// Whether one of those of which nothing was made may be a verb: `yodels`.
+    pub(crate) verbal: bool,
     /// Tokens of which nothing was made.
     pub(crate) left: Vec<usize>,
     /// Tokens that tell how somebody looks, or what they have with them.
@@ -143,6 +145,7 @@ impl Clause {
             places: Vec::new(),
             conditions: Vec::new(),
             denials: Vec::new(),
+            verbal: false,
             left: Vec::new(),
             looks: Vec::new(),
             tokens: at..at,

@@ -31,8 +31,8 @@ pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement
         maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
         maker.asks = clause.asks;
         // `Regression for bug 371: …`
-        let heads = at == 0 || clauses.get(at + 1).is_some_and(|next| next.join == Join::Colon);
-        if heads && clause.is_heading() {
+        let colon = clauses.get(at + 1).is_some_and(|next| next.join == Join::Colon);
+        if (colon || at == 0 && !clause.verbal) && clause.is_heading() {
             maker.say(clause.tokens.clone(), Says::Background(Background::Comment));
             continue;
         }

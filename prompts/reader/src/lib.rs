@@ -51,7 +51,11 @@ mod discourse;
 
 mod story;
 
+mod form;
+
 mod account;
+
+mod reading;
 
 mod passes;
 
@@ -64,7 +68,7 @@ pub use lexicon::{BadData, Files, SHIPPED};
 pub use passes::Passes;
 pub use rows::{Act, Cue};
 pub use statement::{Deed, Reason, Says, Statement};
-pub use story::{Person, Step, Story};
+pub use story::{Line, Person, Step, Story};
 
 /// A reader with its rows.
 #[derive(Debug, Default)]

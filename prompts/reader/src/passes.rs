@@ -1,6 +1,7 @@
 //! All passes of one text, to be looked at: `socrates read --passes`.
 
 use std::fmt;
+use std::ops::Range;
 
 use crate::account::{Fate, Read, account};
 use crate::chunk::{Chunk, chunks};
@@ -11,7 +12,7 @@ use crate::lexicon::Lexicon;
 use crate::normalize::{Scene, normalize};
 use crate::sentence::clauses;
 use crate::statement::{Named, Says, Statement};
-use crate::story::{Story, story};
+use crate::story::{Line, Story, story};
 use crate::token::Token;
 
 /// What each pass made of a text.
@@ -26,6 +27,7 @@ pub struct Passes<'a> {
     statements: Vec<Statement<Named>>,
     told: Told,
     story: Story,
+    lines: Vec<(Line, Range<usize>)>,
 }
 
 impl<'a> Passes<'a> {
@@ -36,8 +38,8 @@ impl<'a> Passes<'a> {
         let clauses = clauses(&chunks, lexicon);
         let statements = statements(&clauses, lexicon);
         let told = told(&statements);
-        let story = story(&told);
-        Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, story }
+        let (story, lines) = story(&told);
+        Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, story, lines }
     }
 
     /// Acts of clauses of which no statement says anything: a fault of the reader, and always empty.
@@ -63,7 +65,13 @@ impl<'a> Passes<'a> {
     #[must_use]
     pub fn read(self) -> Read {
         let pieces = account(&self.text, &self.scene, &self.clauses, &self.told.statements);
-        Read { story: self.story, pieces }
+        let bytes = |tokens: Range<usize>| {
+            let own = self.scene.tokens.get(tokens)?;
+            let start = own.iter().map(|token| token.at.start).min()?;
+            Some(start..own.iter().map(|token| token.at.end).max()?)
+        };
+        let lines = self.lines.into_iter().filter_map(|(line, tokens)| Some((line, bytes(tokens)?))).collect();
+        Read { story: self.story, pieces, lines }
     }
 }
 

@@ -116,6 +116,7 @@ impl Parser<'_> {
         } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) {
             clause.looks.extend(chunk.tokens.clone());
         } else if !says_nothing(chunk) {
+            clause.verbal |= matches!(chunk.bent, Bent::S | Bent::Ed);
             clause.left.extend(chunk.tokens.clone());
         }
         self.at += 1;

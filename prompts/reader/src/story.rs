@@ -1,8 +1,8 @@
 //! Pass 7: statements of people to a story, and the story as a form.
 
 use std::fmt;
+use std::ops::Range;
 
-use socrates_model::form::{Deed as FormDeed, Form, FormGroup, FormHuman, Pace, PlaceWord, Step as FormStep, When};
 use socrates_model::{Gesture, PlaceClass, Relation, Side};
 
 use crate::cast::People;
@@ -11,7 +11,13 @@ use crate::rows::{Act, Cue};
 use crate::statement::{Deed, Reason, Says};
 
 /// Distances at which a reason holds of which the text gives none, m: seen, near, in the way. As the offline author's.
-const DISTANCES_M: [(Cue, f64); 3] = [(Cue::Visible, 5.0), (Cue::Near, 2.0), (Cue::Blocking, 1.5)];
+const DISTANCES_M: [(Cue, f64); 3] = [(Cue::Visible, 5.0), (Cue::Near, 3.0), (Cue::Blocking, 2.0)];
+
+/// The distance or time of a reason, m or s, as said or as usual.
+pub(crate) fn amount_of(reason: &Reason<People>) -> f64 {
+    let usual = DISTANCES_M.iter().find(|(cue, _)| *cue == reason.cue).map_or(0.0, |(_, usual)| *usual);
+    reason.amount.unwrap_or(usual)
+}
 
 /// One step of somebody.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,109 +70,150 @@ pub struct Story {
     pub robot_says: Vec<Gesture>,
 }
 
-/// Tells the story that statements make.
-pub(crate) fn story(told: &Told) -> Story {
+/// What a story states, by people's numbers from 0; whatever a text says of it has the words that say it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Line {
+    /// Somebody is there.
+    Person(usize),
+    /// How somebody stands to the robot's way.
+    Relation(usize, Relation),
+    /// On which side.
+    Side(usize),
+    /// How fast somebody walks.
+    Pace(usize),
+    /// Somebody is in a group.
+    Group(usize),
+    /// Somebody's step, by its number from 0.
+    Step(usize, usize),
+    /// Where it happens.
+    Place(PlaceClass),
+    /// Where the robot's way begins.
+    RobotStart(PlaceClass),
+    /// Where it ends.
+    RobotGoal(PlaceClass),
+    /// What it leads past.
+    RobotVia(PlaceClass),
+    /// The robot makes a sign.
+    RobotSays(Gesture),
+}
+
+/// Tells the story that statements make, with the tokens that say each line of it.
+pub(crate) fn story(told: &Told) -> (Story, Vec<(Line, Range<usize>)>) {
     let people = told.roles.iter().map(|role| Person { role: role.clone(), ..Person::default() }).collect();
-    let mut story = Story { people, ..Story::default() };
-    let (mut groups, mut ranked, mut there, mut goal_there) = (0, 0, false, false);
-    let mut closed = None;
+    let mut teller = Teller { story: Story { people, ..Story::default() }, ..Teller::default() };
     for statement in &told.statements {
-        if let Says::Happens(class @ (PlaceClass::Elevator | PlaceClass::Room), _) = &statement.says {
-            closed = Some(*class);
-        }
-        match &statement.says {
-            Says::Relate(who, relation, side) => story.each(who, |person| {
-                let Some(relation) = relation else {
-                    person.side = side.or(person.side);
-                    return;
-                };
-                // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
-                let follows = *relation == Relation::Behind;
-                let stands = person.relation.is_none() || person.relation == Some(Relation::Static) && !follows;
-                // Whoever comes out and crosses is met as they cross.
-                let crosses = person.relation == Some(Relation::Leaving) && *relation == Relation::Crossing;
-                if stands || crosses {
-                    person.relation = Some(*relation);
-                }
-                person.side = side.or(person.side);
-            }),
+        teller.tell(&statement.says, &statement.tokens);
+    }
+    let Teller { mut story, mut lines, there, goal_there, closed, .. } = teller;
+    if goal_there && story.robot_goal.is_none() {
+        story.robot_goal = closed;
+    }
+    let out = unsure(told);
+    story.without(&out);
+    lines.retain_mut(|(line, _)| line.without(&out));
+    story.settle(told, there);
+    (story, lines)
+}
+
+/// A story as it is being told.
+#[derive(Default)]
+struct Teller {
+    story: Story,
+    lines: Vec<(Line, Range<usize>)>,
+    groups: usize,
+    /// How much the place counts that was told so far.
+    ranked: u8,
+    /// Whether it happens where the robot's way ends.
+    there: bool,
+    /// Whether the robot's way ends in the room or car of which is spoken.
+    goal_there: bool,
+    closed: Option<PlaceClass>,
+}
+
+impl Teller {
+    fn tell(&mut self, says: &Says<People>, tokens: &Range<usize>) {
+        let story = &mut self.story;
+        let steps: Vec<usize> = story.people.iter().map(|person| person.steps.len()).collect();
+        let mut lines: Vec<Line> = Vec::new();
+        match says {
+            Says::Relate(who, relation, side) => {
+                story.relate(who, *relation, *side);
+                lines.extend(relation.iter().flat_map(|of| who.iter().map(move |person| Line::Relation(*person, *of))));
+                lines.extend(side.iter().flat_map(|_| who.iter().map(|person| Line::Side(*person))));
+            }
             // Those who talk on are no new group.
             Says::Group(who) if who.len() > 1 && !story.share_a_group(who) => {
-                groups += 1;
-                story.each(who, |person| person.group = Some(groups));
+                self.groups += 1;
+                let group = self.groups;
+                story.each(who, |person| person.group = Some(group));
+                lines.extend(who.iter().map(|person| Line::Group(*person)));
             }
-            Says::Pace(who, mps) => story.each(who, |person| person.pace_mps = Some(*mps)),
-            Says::Do(deed) => story.does(deed),
-            Says::RobotSays(Some(gesture), _) => story.robot_sign(*gesture),
-            Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => story.robot_sign(*gesture),
-            Says::Happens(class, rank) if *rank > ranked => (story.place, ranked) = (Some(*class), *rank),
-            Says::There => there = true,
-            Says::GoalThere => goal_there = true,
-            Says::RobotVia(class) => story.robot_via.push(*class),
-            Says::RobotStart(class) => story.robot_start = Some(*class),
-            Says::RobotGoal(class) => story.robot_goal = Some(*class),
+            Says::Pace(who, mps) => {
+                story.each(who, |person| person.pace_mps = Some(*mps));
+                lines.extend(who.iter().map(|person| Line::Pace(*person)));
+            }
+            Says::Do(deed) => lines.extend(story.does(deed).into_iter().map(Line::RobotSays)),
+            Says::RobotSays(Some(gesture), _)
+            | Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => {
+                story.robot_sign(*gesture);
+                lines.push(Line::RobotSays(*gesture));
+            }
+            Says::Happens(class, rank) => {
+                if matches!(class, PlaceClass::Elevator | PlaceClass::Room) {
+                    self.closed = Some(*class);
+                }
+                if *rank > self.ranked {
+                    (story.place, self.ranked) = (Some(*class), *rank);
+                }
+                lines.push(Line::Place(*class));
+            }
+            Says::There => self.there = true,
+            Says::GoalThere => self.goal_there = true,
+            Says::RobotVia(class) => {
+                story.robot_via.push(*class);
+                lines.push(Line::RobotVia(*class));
+            }
+            Says::RobotStart(class) => {
+                story.robot_start = Some(*class);
+                lines.push(Line::RobotStart(*class));
+            }
+            Says::RobotGoal(class) => {
+                story.robot_goal = Some(*class);
+                lines.push(Line::RobotGoal(*class));
+            }
+            Says::Introduce(who) | Says::Noted(who) => lines.extend(who.iter().map(|person| Line::Person(*person))),
             Says::Group(_)
-            | Says::Happens(..)
             | Says::RobotSays(None, _)
-            | Says::Introduce(_)
-            | Says::Noted(_)
             | Says::Then(_)
             | Says::Background(_)
             | Says::NotPlayed(_)
             | Says::Goes
             | Says::NotRead => {}
         }
-    }
-    if goal_there && story.robot_goal.is_none() {
-        story.robot_goal = closed;
-    }
-    story.without(&unsure(told));
-    // Whoever is in the robot's way from the start stands there.
-    for person in story.people.iter_mut().filter(|person| person.relation.is_none()) {
-        let blocks = |step: &&Step| step.act == Act::Block && step.when.is_empty();
-        if person.steps.first().as_ref().is_some_and(blocks) {
-            person.relation = Some(Relation::Static);
+        for (person, before) in steps.into_iter().enumerate() {
+            let now = self.story.people.get(person).map_or(0, |person| person.steps.len());
+            lines.extend((before..now).map(|step| Line::Step(person, step)));
         }
+        self.lines.extend(lines.into_iter().map(|line| (line, tokens.clone())));
     }
-    // Of several, some of whom come out, those who stay are inside.
-    if story.people.iter().any(|person| person.relation == Some(Relation::Leaving)) {
-        for person in story.people.iter_mut().filter(|person| person.relation == Some(Relation::Static)) {
-            if person.steps.iter().any(|step| step.act == Act::StandStill) {
-                person.relation = Some(Relation::Staying);
-            }
-        }
+}
+
+impl Line {
+    /// Whether it is about nobody who is taken out; it names the others by their new numbers.
+    fn without(&mut self, out: &[usize]) -> bool {
+        let (Self::Person(person)
+        | Self::Relation(person, _)
+        | Self::Side(person)
+        | Self::Pace(person)
+        | Self::Group(person)
+        | Self::Step(person, _)) = self
+        else {
+            return true;
+        };
+        let stays = !out.contains(person);
+        *person -= out.iter().filter(|gone| **gone < *person).count();
+        stays
     }
-    // Whoever stays where they are as the robot comes into their room or car is inside.
-    let elevator = story.place == Some(PlaceClass::Elevator);
-    let closed = elevator || story.place == Some(PlaceClass::Room);
-    let enters = told.statements.iter().any(|statement| {
-        matches!(&statement.says, Says::Then(Reason { who: None, cue: Cue::Visible, .. }))
-            || matches!(&statement.says, Says::RobotGoal(class) if Some(*class) == story.place)
-    });
-    let comes_in =
-        |step: &Step| step.when.iter().any(|reason| reason.cue == Cue::Visible) || enters && step.when.is_empty();
-    for person in story.people.iter_mut().filter(|person| closed && person.relation.is_none_or(Relation::stands)) {
-        if person
-            .steps
-            .iter()
-            .any(|step| step.act == Act::StandStill && (comes_in(step) || elevator && step.when.is_empty()))
-        {
-            person.relation = Some(Relation::Staying);
-        }
-    }
-    // Whoever comes out, or stays inside, is where the robot goes.
-    let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
-    if story.place.is_none() && (there || story.people.iter().any(inside)) {
-        story.place = story.robot_goal;
-    }
-    // In the open nobody is inside.
-    let open = story.place.is_some_and(|place| {
-        !matches!(place, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway | PlaceClass::ElevatorLobby)
-    });
-    for person in story.people.iter_mut().filter(|person| open && person.relation == Some(Relation::Staying)) {
-        person.relation = Some(Relation::Static);
-    }
-    story
 }
 
 /// People who are named in clauses that are not read, and of whom nothing is read anywhere.
@@ -216,6 +263,70 @@ fn unsure(told: &Told) -> Vec<usize> {
 }
 
 impl Story {
+    fn relate(&mut self, who: &[usize], relation: Option<Relation>, side: Option<Side>) {
+        self.each(who, |person| {
+            person.side = side.or(person.side);
+            let Some(relation) = relation else { return };
+            // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
+            let follows = relation == Relation::Behind;
+            let stands = person.relation.is_none() || person.relation == Some(Relation::Static) && !follows;
+            // Whoever comes out and crosses is met as they cross.
+            let crosses = person.relation == Some(Relation::Leaving) && relation == Relation::Crossing;
+            if stands || crosses {
+                person.relation = Some(relation);
+            }
+        });
+    }
+
+    /// Settles what follows from the whole: who stands, and who is inside.
+    fn settle(&mut self, told: &Told, there: bool) {
+        // Whoever is in the robot's way from the start stands there.
+        for person in self.people.iter_mut().filter(|person| person.relation.is_none()) {
+            let blocks = |step: &&Step| step.act == Act::Block && step.when.is_empty();
+            if person.steps.first().as_ref().is_some_and(blocks) {
+                person.relation = Some(Relation::Static);
+            }
+        }
+        // Of several, some of whom come out, those who stay are inside.
+        if self.people.iter().any(|person| person.relation == Some(Relation::Leaving)) {
+            for person in self.people.iter_mut().filter(|person| person.relation == Some(Relation::Static)) {
+                if person.steps.iter().any(|step| step.act == Act::StandStill) {
+                    person.relation = Some(Relation::Staying);
+                }
+            }
+        }
+        // Whoever stays where they are as the robot comes into their room or car is inside.
+        let elevator = self.place == Some(PlaceClass::Elevator);
+        let closed = elevator || self.place == Some(PlaceClass::Room);
+        let enters = told.statements.iter().any(|statement| {
+            matches!(&statement.says, Says::Then(Reason { who: None, cue: Cue::Visible, .. }))
+                || matches!(&statement.says, Says::RobotGoal(class) if Some(*class) == self.place)
+        });
+        let comes_in =
+            |step: &Step| step.when.iter().any(|reason| reason.cue == Cue::Visible) || enters && step.when.is_empty();
+        for person in self.people.iter_mut().filter(|person| closed && person.relation.is_none_or(Relation::stands)) {
+            if person
+                .steps
+                .iter()
+                .any(|step| step.act == Act::StandStill && (comes_in(step) || elevator && step.when.is_empty()))
+            {
+                person.relation = Some(Relation::Staying);
+            }
+        }
+        // Whoever comes out, or stays inside, is where the robot goes.
+        let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
+        if self.place.is_none() && (there || self.people.iter().any(inside)) {
+            self.place = self.robot_goal;
+        }
+        // In the open nobody is inside.
+        let open = self.place.is_some_and(|place| {
+            !matches!(place, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway | PlaceClass::ElevatorLobby)
+        });
+        for person in self.people.iter_mut().filter(|person| open && person.relation == Some(Relation::Staying)) {
+            person.relation = Some(Relation::Static);
+        }
+    }
+
     /// Takes people out, and numbers the others anew.
     fn without(&mut self, out: &[usize]) {
         let anew = |person: usize| person - out.iter().filter(|gone| **gone < person).count();
@@ -252,17 +363,18 @@ impl Story {
         }
     }
 
-    fn does(&mut self, deed: &Deed<People>) {
+    /// Somebody does something; the signs of the robot for which that waits.
+    fn does(&mut self, deed: &Deed<People>) -> Vec<Gesture> {
         let signs = deed.when.iter().chain(&deed.until);
         let by_robot: Vec<Gesture> = signs
             .filter(|reason| reason.cue == Cue::Says && reason.who.is_none())
             .filter_map(|reason| reason.sign)
             .collect();
-        for gesture in by_robot {
-            self.robot_sign(gesture);
+        for gesture in &by_robot {
+            self.robot_sign(*gesture);
         }
         if deed.not {
-            return;
+            return by_robot;
         }
         let whom = deed.whom.as_ref().and_then(|whom| whom.first().copied());
         let step = Step {
@@ -286,96 +398,12 @@ impl Story {
                 person.steps.push(step.clone());
             }
         });
-    }
-
-    /// The story as a form. How somebody stands to the robot's way, where the text leaves it open, is `frontal`, or `static` for
-    /// somebody who blocks; places are classes.
-    #[must_use]
-    pub fn form(&self) -> Form {
-        let mut form = Form::default();
-        for person in &self.people {
-            let human = self.human(person);
-            match form.humans.last_mut() {
-                Some(last) if FormHuman { count: 1, ..last.clone() } == human => last.count += 1,
-                Some(_) | None => form.humans.push(human),
-            }
-        }
-        let groups: std::collections::BTreeSet<String> =
-            form.humans.iter().filter_map(|human| human.group.clone()).collect();
-        form.groups = groups.into_iter().map(|id| FormGroup { id, formation: None }).collect();
-        form
-    }
-
-    fn human(&self, person: &Person) -> FormHuman {
-        let blocks = person.steps.iter().any(|step| step.act == Act::Block);
-        let open = if blocks { Relation::Static } else { Relation::Frontal };
-        let (standing, steps): (Vec<&Step>, Vec<&Step>) = person
-            .steps
-            .iter()
-            .partition(|step| step.when.is_empty() && step.act == Act::Follow && step.for_s.is_none());
-        FormHuman {
-            id: None,
-            count: 1,
-            role: Some(person.role.clone()).filter(|role| role != "person"),
-            relation: person.relation.unwrap_or(open),
-            side: person.side,
-            facing: None,
-            place: self.place.map(PlaceWord::Class),
-            start: None,
-            goal: None,
-            pace: person.pace_mps.map(Pace::Mps),
-            group: person.group.map(|group| format!("group_{group}")),
-            does: steps.into_iter().map(form_step).collect(),
-            reacts: standing.into_iter().map(|step| FormStep { when: vec![When::Always], ..form_step(step) }).collect(),
-        }
-    }
-}
-
-fn form_step(step: &Step) -> FormStep {
-    let act = match (step.act, step.whom) {
-        (Act::GiveWay, _) => Some(FormDeed::GiveWay),
-        (Act::Block, _) => Some(FormDeed::Block),
-        (Act::Look, _) => Some(FormDeed::LookAtRobot),
-        (Act::StandStill, _) => Some(FormDeed::StandStill),
-        (Act::RunAway, _) => Some(FormDeed::RunAway),
-        (Act::Approach, _) => Some(FormDeed::Approach),
-        (Act::Follow, Some(whom)) => Some(FormDeed::FollowHuman(name(whom))),
-        (Act::Follow, None) => Some(FormDeed::FollowRobot),
-        (Act::Navigate, _) => Some(FormDeed::Navigate),
-        (Act::TurnBack, _) => Some(FormDeed::TurnBack),
-        (Act::Sign, _) => None,
-    };
-    FormStep {
-        when: step.when.iter().map(form_when).collect(),
-        act,
-        for_s: step.for_s,
-        until: step.until.iter().map(form_when).collect(),
-        say: step.says,
-        ..FormStep::default()
-    }
-}
-
-fn form_when(reason: &Reason<People>) -> When {
-    let distance = DISTANCES_M.iter().find(|(cue, _)| *cue == reason.cue).map_or(0.0, |(_, m)| *m);
-    let amount = reason.amount.unwrap_or(distance);
-    let speaker = reason.who.as_ref().and_then(|who| who.first().copied());
-    match (reason.cue, reason.sign, speaker) {
-        (Cue::Visible, ..) => When::RobotVisible(amount),
-        (Cue::Near, ..) => When::RobotNear(amount),
-        (Cue::Blocking, ..) => When::RobotBlocking(amount),
-        (Cue::Moving, ..) => When::RobotMoving,
-        (Cue::Stopped, ..) => When::RobotStopped,
-        (Cue::Passed, ..) => When::RobotPassed,
-        (Cue::Says, sign, Some(who)) => When::HumanSays(name(who), sign.unwrap_or(Gesture::ExcuseMe)),
-        (Cue::Says, sign, None) => When::RobotSays(sign.unwrap_or(Gesture::ExcuseMe)),
-        (Cue::Encounter, ..) => When::AtEncounter,
-        (Cue::Goal, ..) => When::GoalReached,
-        (Cue::After, ..) => When::AfterSecs(amount),
+        by_robot
     }
 }
 
 /// `human_1` of the first.
-fn name(number: usize) -> String {
+pub(crate) fn name(number: usize) -> String {
     format!("human_{}", number + 1)
 }
 
