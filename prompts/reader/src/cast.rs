@@ -4,6 +4,7 @@
 //! `one`, `the second` and `the others` are spoken.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use socrates_model::{Gesture, Relation};
 
@@ -61,6 +62,8 @@ pub(crate) struct Cast {
     pub(crate) relations: BTreeMap<usize, Relation>,
     /// Of whom a pronoun is not said: those who do it.
     pub(crate) excluded: People,
+    /// Noun phrases of which it is not sure whom they mean, by tokens.
+    pub(crate) doubts: Vec<Range<usize>>,
     /// Who was called the others last.
     pub(crate) others: People,
 }
@@ -202,6 +205,9 @@ impl Cast {
                 && noun.ordinal.is_none()
                 && !(noun.pick == Pick::Others && base.len() == 1) =>
             {
+                if noun.count.is_some_and(|count| usize::try_from(count) != Ok(base.len())) {
+                    self.doubts.push(noun.tokens.clone());
+                }
                 base
             }
             None if noun.of.is_some() => base,
@@ -290,6 +296,7 @@ impl Cast {
                 .filter(|person| self.roles.get(*person).is_some_and(|own| own == role))
                 .collect(),
         };
+        let known_count = known.clone();
         let found = match noun.pick {
             Pick::Some | Pick::Another => None,
             // `the boys`, of whom nobody was called so: those of whom was spoken.
@@ -319,6 +326,11 @@ impl Cast {
             }
             Pick::The | Pick::Plain | Pick::All | Pick::None | Pick::Others | Pick::Former => self.picks(noun, &known),
         };
+        // `all three nurses`, of two: somebody is meant who was not made out.
+        let few = found.is_none() && !known_count.is_empty() && noun.count.is_some();
+        if few && matches!(noun.pick, Pick::The | Pick::All | Pick::Others) {
+            self.doubts.push(noun.tokens.clone());
+        }
         match (found, noun.pick) {
             (Some(people), _) => people,
             (None, Pick::None) => People::new(),

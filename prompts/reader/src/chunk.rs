@@ -113,7 +113,10 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
         && token.is(Sort::Verb)
         && before
             .is_some_and(|before| !before.is(Sort::Definite) && !before.is(Sort::At) && !before.is_mark(Mark::Stop));
-    let place = place(tokens, at, lexicon).filter(|_| !acts);
+    let place = place(tokens, at, lexicon).filter(|(_, end)| {
+        let more = tokens.get(at + 1).is_some_and(|next| next.spelled.len() > 1 && next.number().is_none());
+        !acts || *end > at + 1 && more
+    });
     // `the robot guides a visitor` tells of no guides.
     let one = |token: &Token| token.is(Sort::Robot) || token.is(Sort::Role) && token.bent == Bent::Base;
     let acts = token.bent == Bent::S && token.is(Sort::Verb) && before.is_some_and(one);

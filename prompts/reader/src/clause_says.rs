@@ -272,7 +272,8 @@ impl Maker<'_> {
         // `from the ward to the exit`
         let route = clause.subject.is_empty()
             && clause.acts.is_empty()
-            && clause.places.iter().any(|at| at.from)
+            && clause.places.len() > 1
+            && clause.places.iter().any(|at| at.from || at.via)
             && clause.places.iter().any(|at| at.to);
         // Whoever follows the robot to a place tells where it drives.
         let along = |act: &Predicate| {
@@ -313,6 +314,8 @@ impl Maker<'_> {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
                 Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),
+                // `reception to ward 5`
+                Some(class) if route && number == 0 => Says::RobotStart(*class),
                 Some(class) if *via && (goes || part.is_some()) => {
                     self.say(tokens.0..tokens.1, Says::Happens(*class, 1));
                     Says::RobotVia(*class)

@@ -30,6 +30,15 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
             told.push(Statement { partly, tokens: tokens.clone(), first, tells, asks, says });
         }
     }
+    let doubts = std::mem::take(&mut cast.doubts);
+    told.extend(doubts.into_iter().map(|tokens| Statement {
+        partly: false,
+        tokens,
+        first: false,
+        tells: false,
+        asks: false,
+        says: Says::NotRead,
+    }));
     let told = Told { roles: cast.roles, vague: cast.vague, statements: told };
     Told { statements: doubted(&told), ..told }
 }

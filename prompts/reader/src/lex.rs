@@ -42,6 +42,16 @@ fn corrected(mut tokens: Vec<Token>, words: &Words) -> Vec<Token> {
         let meant = behind + usize::from(is(behind, &|token| token.is_mark(Mark::Comma)));
         let alone = tokens.get(meant + 1).is_none_or(|next| !next.is_said());
         let old = (0..at).rev().find(|old| is(*old, &counts));
+        // `two porters, no wait, three porters`
+        let role = |token: &&Token| token.is(Sort::Role) || token.is(Sort::People);
+        let noun = |at: usize| tokens.get(at + 1).filter(role).map(|token| token.lemma.as_str());
+        if let Some(old) = old.filter(|old| {
+            marks && behind > at + 1 && is(meant, &counts) && noun(meant).is_some_and(|own| noun(*old) == Some(own))
+        }) {
+            tokens.drain(old..meant);
+            at = old + 1;
+            continue;
+        }
         match old.filter(|_| marks && behind > at + 1 && is(meant, &counts) && alone && meant <= at + 5) {
             Some(old) if old + 1 < at => {
                 let new = tokens.get(meant).cloned();
@@ -92,7 +102,12 @@ fn unnumbered(tokens: Vec<Token>, words: &Words) -> Vec<Token> {
     };
     let of_correction = |at: usize| (0..7).any(|back| at.checked_sub(back).is_some_and(|from| taken_back(from) > back));
     let keep: Vec<bool> = (0..tokens.len())
-        .map(|at| !of_list(at) && !at.checked_sub(1).is_some_and(&of_list) && !of_clock(at) && !of_correction(at))
+        .map(|at| {
+            !of_clock(at)
+                && !of_list(at)
+                && !at.checked_sub(1).is_some_and(|before| of_list(before) && !of_clock(before))
+                && !of_correction(at)
+        })
         .collect();
     tokens.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(token, _)| token).collect()
 }

@@ -102,9 +102,7 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
         if let Some((end, row)) = row {
             let end = match row.extent {
                 Extent::Words | Extent::Lead => end,
-                Extent::Clause => {
-                    ends(&tokens, end, |token| matches!(token.kind, Kind::Mark(mark) if mark != Mark::Quote))
-                }
+                Extent::Clause => clause_end(&tokens, end),
                 Extent::Sentence => ends(&tokens, end, |token| token.is_mark(Mark::Stop)),
             };
             let tells = |token: &Token| {
@@ -136,6 +134,21 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
         }
     }
     scene
+}
+
+/// Where a clause ends that asks for nothing: before a mark, and before what somebody does after it: `because he is late and stops`.
+/// It ends at once where it tells of somebody new, who is there.
+fn clause_end(tokens: &[Token], from: usize) -> usize {
+    let acts = |at: usize| tokens.get(at + 1).is_some_and(|next| next.is(Sort::Verb) && next.bent == Bent::S);
+    let marked = |token: &Token| matches!(token.kind, Kind::Mark(mark) if mark != Mark::Quote);
+    let end = ends(tokens, from, marked);
+    let joined = (from..end).find(|at| tokens.get(*at).is_some_and(|token| token.is(Sort::And)) && acts(*at));
+    let said = tokens.get(from..end).unwrap_or_default();
+    let new = said.windows(2).any(|two| match two {
+        [one, role] => (one.is(Sort::Indefinite) || one.number().is_some()) && role.is(Sort::Role),
+        _ => false,
+    });
+    if new { from } else { joined.unwrap_or(end) }
 }
 
 fn ends(tokens: &[Token], from: usize, is: impl Fn(&Token) -> bool) -> usize {

@@ -377,7 +377,11 @@ impl Reader<'_> {
         // `two oncoming`
         let told = several && !figure && self.peek().is_some_and(|next| next.is(Sort::Looks) || next.sorts.is_empty());
         let counts = alone && (figure || several);
-        if counts && !told && !self.peek().is_some_and(acts) {
+        // `four of them: 2 from the front, 1 from behind`
+        let listed = figure
+            && before.is_none_or(|before| !before.is_said())
+            && self.peek().is_some_and(|next| next.is(Sort::From));
+        if counts && !told && !listed && !self.peek().is_some_and(acts) {
             return None;
         }
         let ends = |token: &Token| {
