@@ -85,8 +85,14 @@ impl Read {
 
 impl Fate {
     /// The fate that what a statement says gives its words; the rank of what wins over another on the same words.
-    fn of(says: &Says<People>) -> (Self, u8) {
+    fn of(says: &Says<People>, story: &Story) -> (Self, u8) {
+        let part =
+            |class| story.place == Some(class) || story.robot_start == Some(class) || story.robot_goal == Some(class);
         match says {
+            // People meet the robot in one place: another one that is told is not played.
+            Says::Happens(class, _) if !part(*class) && !story.robot_via.contains(class) => {
+                (Self::NotPlayed("people meet the robot in one place".to_owned()), 2)
+            }
             Says::NotRead | Says::RobotSays(None, _) => (Self::NotRead, 3),
             Says::NotPlayed(why) => (Self::NotPlayed(why.clone()), 2),
             Says::Background(reason) => (Self::Background(*reason), 0),
@@ -110,8 +116,14 @@ impl Fate {
 }
 
 /// What became of every piece, in the order of the text.
-pub(crate) fn account(text: &str, scene: &Scene, clauses: &[Clause], statements: &[Statement<People>]) -> Vec<Piece> {
-    let mut pieces = words(scene, clauses, statements);
+pub(crate) fn account(
+    text: &str,
+    scene: &Scene,
+    clauses: &[Clause],
+    statements: &[Statement<People>],
+    story: &Story,
+) -> Vec<Piece> {
+    let mut pieces = words(scene, clauses, statements, story);
     let background = scene.background.iter();
     pieces.extend(background.map(|(at, reason)| Piece {
         at: at.clone(),
@@ -132,11 +144,11 @@ pub(crate) fn account(text: &str, scene: &Scene, clauses: &[Clause], statements:
 }
 
 /// The fate of every word of the scene, each a piece of its own.
-fn words(scene: &Scene, clauses: &[Clause], statements: &[Statement<People>]) -> Vec<Piece> {
+fn words(scene: &Scene, clauses: &[Clause], statements: &[Statement<People>], story: &Story) -> Vec<Piece> {
     // The statement that is about the fewest words tells of a word; of two about the same, the one that loses more.
     let mut fates: Vec<Option<(usize, u8, Fate)>> = vec![None; scene.tokens.len()];
     for statement in statements {
-        let (fate, rank) = Fate::of(&statement.says);
+        let (fate, rank) = Fate::of(&statement.says, story);
         let length = statement.tokens.len();
         for own in fates.get_mut(statement.tokens.clone()).unwrap_or_default() {
             let wins = |(other, own): &(usize, u8)| *other > length || *other == length && *own < rank;

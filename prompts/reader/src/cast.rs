@@ -25,6 +25,7 @@ const MOST: usize = 30;
 pub(crate) struct Cast {
     pub(crate) roles: Vec<String>,
     pub(crate) vague: People,
+    pub(crate) plain: People,
     /// Who was named last.
     pub(crate) last: People,
     /// Who was named before them.
@@ -398,6 +399,13 @@ impl Cast {
         let any = noun.generic || ANYBODY.contains(&role);
         if any && (self.asks || noun.several && noun.count.is_none() && noun.pick == Pick::Plain) {
             self.vague.extend(&people);
+        }
+        if noun.pick == Pick::Plain
+            && noun.count.is_none()
+            && noun.beside.is_none()
+            && !matches!(noun.head, Head::Name(_))
+        {
+            self.plain.extend(&people);
         }
         if count > 1 {
             self.fresh.clone_from(&people);

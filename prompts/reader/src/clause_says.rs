@@ -51,6 +51,11 @@ impl Maker<'_> {
         let clause = of_people.as_ref().unwrap_or(clause);
         self.partly = !clause.left.is_empty() || clause.acts.is_empty() && !clause.looks.is_empty();
         let start = self.found.len();
+        // Whoever is named before a condition is there before those whom it names.
+        let named = clause.subject.first().filter(|noun| matches!(noun.head, Head::Role(_) | Head::Name(_)));
+        if named.is_some_and(|noun| clause.conditions.iter().any(|when| when.clause.tokens.start > noun.tokens.start)) {
+            self.are_there(clause.subject.clone());
+        }
         let Times { when, until, turned, used } = self.times(clause);
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         self.places(clause, robot);

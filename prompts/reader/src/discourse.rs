@@ -3,7 +3,7 @@
 
 use socrates_model::Gesture;
 
-use crate::cast::{Cast, People};
+use crate::cast::{ANYBODY, Cast, People};
 use crate::noun::Head;
 use crate::rows::{Act, Cue};
 use crate::statement::{Deed, Named, Reason, Says, Statement};
@@ -14,6 +14,8 @@ pub(crate) struct Told {
     pub(crate) roles: Vec<String>,
     /// Those of whom is spoken in general, without a number: `people step in front of it`.
     pub(crate) vague: People,
+    /// Those who are named without an article or a number: `blind corner, startled pedestrian`.
+    pub(crate) plain: People,
     pub(crate) statements: Vec<Statement<People>>,
 }
 
@@ -39,7 +41,7 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
         asks: false,
         says: Says::NotRead,
     }));
-    let told = Told { roles: cast.roles, vague: cast.vague, statements: told };
+    let told = Told { roles: cast.roles, vague: cast.vague, plain: cast.plain, statements: told };
     Told { statements: doubted(&told), ..told }
 }
 
@@ -68,7 +70,11 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
             | Says::NotRead => false,
         })
     };
-    let unknown: People = (0..told.roles.len()).filter(|person| !known(*person)).collect();
+    // Somebody of no role among others who have one was mostly not made out.
+    let anybody = |person: &usize| told.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str()));
+    let all_anybody = (0..told.roles.len()).all(|person| anybody(&person));
+    let unknown: People =
+        (0..told.roles.len()).filter(|person| !known(*person) || anybody(person) && !all_anybody).collect();
     let mut all = told.statements.clone();
     if unknown.len() < told.roles.len() {
         for statement in &told.statements {

@@ -53,6 +53,11 @@ impl Reader<'_> {
             noun.pick = Pick::Some;
         }
         self.at += 1;
+        // `someone else`
+        if noun.pick == Pick::Some && self.peek().is_some_and(|next| next.lemma == "else") {
+            noun.pick = Pick::Another;
+            self.at += 1;
+        }
         Some(noun)
     }
 
@@ -73,12 +78,18 @@ impl Reader<'_> {
         // `A walks ahead, B crosses`, `W1`, `ped2`.
         let of_label =
             at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Label));
+        let article = at
+            .checked_sub(1)
+            .and_then(|at| self.tokens.get(at))
+            .is_some_and(|before| before.is(Sort::Indefinite) || before.is(Sort::Definite));
         let letter = !of_label
+            && !article
             && (token.capital && matches!(token.spelled.as_bytes(), [b'b'..=b'h'])
                 || token.capital && token.spelled == "a" && next_acts);
         let digit = token.spelled.len() <= 4
             && token.kind == Kind::Word
             && token.spelled.ends_with(|c: char| c.is_ascii_digit())
+            && !token.spelled.contains('.')
             && token.sorts.is_empty();
         let words = &self.lexicon.words;
         let counts = words.numbers.contains_key(&token.lemma) || words.ordinals.contains_key(&token.lemma);
@@ -130,6 +141,15 @@ impl Reader<'_> {
         let article = |token: &Token| {
             token.is(Sort::Indefinite) || token.is(Sort::Definite) && !token.is(Sort::Who) || token.is(Sort::Possessive)
         };
+        // `Dieter the planner`
+        let the = self.peek().is_some_and(|token| token.is(Sort::Definite) && !token.is(Sort::Who));
+        if let Some(role) =
+            self.tokens.get(self.at + 1).filter(|role| the && role.is(Sort::Role) && role.bent == Bent::Base)
+        {
+            noun.beside = Some(role.lemma.clone());
+            self.at += 2;
+            return;
+        }
         if !opens || !self.tokens.get(self.at + 1).is_some_and(article) || self.deep {
             return;
         }

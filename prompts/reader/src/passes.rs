@@ -64,7 +64,7 @@ impl<'a> Passes<'a> {
     /// What came of it.
     #[must_use]
     pub fn read(self) -> Read {
-        let pieces = account(&self.text, &self.scene, &self.clauses, &self.told.statements);
+        let pieces = account(&self.text, &self.scene, &self.clauses, &self.told.statements, &self.story);
         let bytes = |tokens: Range<usize>| {
             let own = self.scene.tokens.get(tokens)?;
             let start = own.iter().map(|token| token.at.start).min()?;
@@ -90,7 +90,7 @@ impl fmt::Display for Passes<'_> {
             writeln!(f, "statement  {}", Shown(&statement.says))?;
         }
         write!(f, "{}", self.story)?;
-        for piece in account(&self.text, &self.scene, &self.clauses, &self.told.statements) {
+        for piece in account(&self.text, &self.scene, &self.clauses, &self.told.statements, &self.story) {
             if !matches!(piece.fate, Fate::Read) {
                 writeln!(f, "{:?}: {}", piece.fate, self.text.get(piece.at).unwrap_or_default())?;
             }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use socrates_model::{Gesture, PlaceClass, Relation, Side};
 
-use crate::cast::People;
+use crate::cast::{ANYBODY, People};
 use crate::discourse::Told;
 use crate::rows::{Act, Cue};
 use crate::statement::{Deed, Reason, Says};
@@ -216,27 +216,27 @@ impl Line {
     }
 }
 
-/// People who are named in clauses that are not read, and of whom nothing is read anywhere.
+/// How much is told of somebody.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    /// Something is: how they stand, or what they do.
+    told: bool,
+    /// It is in a clause that is read without a word left.
+    whole: bool,
+    /// They are named in one.
+    named: bool,
+}
+
+/// People who are named in clauses that are not read, and of whom nothing is read anywhere; and anybody in general, where others are
+/// named.
 fn unsure(told: &Told) -> Vec<usize> {
-    let mut sure = vec![false; told.roles.len()];
-    let mut of = |who: &[usize]| {
-        for person in who {
-            if let Some(own) = sure.get_mut(*person) {
-                *own = true;
-            }
-        }
-    };
+    let mut known = vec![Known::default(); told.roles.len()];
     for statement in &told.statements {
-        match &statement.says {
-            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) => of(who),
-            Says::Do(deed) => {
-                of(&deed.who);
-                of(deed.whom.as_deref().unwrap_or_default());
-            }
-            Says::Introduce(who) | Says::Noted(who) | Says::RobotSays(_, Some(who)) if !statement.partly => of(who),
-            Says::Introduce(_)
-            | Says::Noted(_)
-            | Says::RobotSays(..)
+        let (who, tells): (Vec<usize>, bool) = match &statement.says {
+            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) => (who.clone(), true),
+            Says::Do(deed) => (deed.who.iter().chain(deed.whom.iter().flatten()).copied().collect(), true),
+            Says::Introduce(who) | Says::Noted(who) | Says::RobotSays(_, Some(who)) => (who.clone(), false),
+            Says::RobotSays(..)
             | Says::Then(_)
             | Says::Happens(..)
             | Says::RobotVia(_)
@@ -247,17 +247,31 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::Background(_)
             | Says::NotPlayed(_)
             | Says::Goes
-            | Says::NotRead => {}
-        }
-    }
-    // Those of whom is spoken in general are nobody where others are named.
-    if sure.iter().enumerate().any(|(person, sure)| *sure && !told.vague.contains(&person)) {
-        for person in &told.vague {
-            if let Some(own) = sure.get_mut(*person) {
-                *own = false;
+            | Says::NotRead => continue,
+        };
+        for person in who {
+            if let Some(own) = known.get_mut(person) {
+                own.told |= tells;
+                own.whole |= tells && !statement.partly;
+                own.named |= !statement.partly;
             }
         }
     }
+    let anybody = |person: usize| told.roles.get(person).is_some_and(|role| ANYBODY.contains(&role.as_str()));
+    let sure = |person: usize, own: &Known| (own.told || own.named) && !told.vague.contains(&person);
+    let others = known.iter().enumerate().any(|(person, own)| sure(person, own));
+    let somebody = known.iter().enumerate().any(|(person, own)| own.whole && sure(person, own) && !anybody(person));
+    let sure: Vec<bool> = known
+        .iter()
+        .enumerate()
+        .map(|(person, own)| {
+            // Those of whom is spoken in general are nobody where others are named; nor is anybody of whom less is read.
+            let vague = others && told.vague.contains(&person);
+            let less = somebody && anybody(person) && !own.whole;
+            let heading = others && told.plain.contains(&person) && !own.told;
+            (own.told || own.named) && !vague && !less && !heading
+        })
+        .collect();
     let unsure: Vec<usize> = (0..sure.len()).filter(|person| sure.get(*person) == Some(&false)).collect();
     if unsure.len() < sure.len() { unsure } else { Vec::new() }
 }

@@ -88,7 +88,7 @@ impl Parser<'_> {
             let and = self.peek().is_some_and(|chunk| chunk.word(Sort::And));
             let both = comma && self.ahead(1).is_some_and(|chunk| chunk.word(Sort::And));
             let skip = if both { 2 } else { 1 };
-            if self.beside(clause) {
+            if self.beside(clause) || self.bracketed(clause) {
                 continue;
             }
             if !comma && !and {
@@ -108,6 +108,37 @@ impl Parser<'_> {
             clause.subject.push(noun);
             self.at += skip + 1;
         }
+    }
+
+    /// `two pedestrians (one employee, one visitor)`, `(all interns)`: who several people are.
+    fn bracketed(&mut self, clause: &mut Clause) -> bool {
+        let opens = self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Open));
+        let [all] = &clause.subject[..] else { return false };
+        if !opens || !all.several {
+            return false;
+        }
+        let mut told: Vec<Noun> = Vec::new();
+        let mut at = self.at + 1;
+        while let Some(chunk) = self.chunks.get(at).filter(|chunk| !chunk.is_mark(Mark::Close)) {
+            match chunk.noun() {
+                Some(noun) if matches!(noun.head, Head::Role(_)) && !noun.generic => told.push(noun.clone()),
+                Some(_) => return false,
+                None if chunk.is_mark(Mark::Comma) || chunk.word(Sort::And) => {}
+                None => return false,
+            }
+            at += 1;
+        }
+        let people: u32 = told.iter().map(|noun| noun.count.unwrap_or(1)).sum();
+        match (&told[..], all.count) {
+            ([one], _) if one.pick == Pick::All => {
+                let beside = role_of(one);
+                clause.subject = vec![Noun { beside, ..all.clone() }];
+            }
+            (_, Some(count)) if all.generic && count == people => clause.subject = told,
+            _ => return false,
+        }
+        self.at = at + 1;
+        true
     }
 
     /// `two colleagues, Ben and Carla`: the names of those before them.
