@@ -97,7 +97,8 @@ impl Maker<'_> {
         }
         self.rest(clause);
         // A reason for which nobody does anything yet is one for what comes.
-        let done = self.found.get(start..).unwrap_or_default().iter().any(|own| matches!(own.says, Says::Do(_)));
+        let done = self.found.get(start..).unwrap_or_default();
+        let done = done.iter().any(|own| matches!(own.says, Says::Do(_) | Says::Then(_)));
         if let Some(reason) = when.iter().chain(&until).next().filter(|_| !done) {
             self.say(used.first().cloned().unwrap_or(0..0), Says::Then(reason.clone()));
         }

@@ -124,7 +124,13 @@ impl Cast {
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
             // `a second one does so`: stands to the robot's way as the first does.
-            Says::Do(deed) if deed.obeys && !deed.not && self.asked.is_none() && self.related.is_some() => {
+            Says::Do(deed)
+                if deed.obeys
+                    && !deed.not
+                    && deed.when.is_empty()
+                    && self.asked.is_none()
+                    && self.related.is_some() =>
+            {
                 Says::Relate(self.people(&deed.who), self.related, None)
             }
             Says::Do(deed) => {

@@ -13,6 +13,7 @@ use crate::lexicon::Lexicon;
 use crate::pattern::{Part, Pattern, Patterns};
 use crate::rows::Extent;
 use crate::token::{Bent, Kind, Mark, Sort, Token};
+use crate::words::Words;
 
 /// Tokens of the scene, and what stands beside it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -102,7 +103,7 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
         if let Some((end, row)) = row {
             let end = match row.extent {
                 Extent::Words | Extent::Lead => end,
-                Extent::Clause => clause_end(&tokens, end),
+                Extent::Clause => clause_end(&tokens, end, &lexicon.words),
                 Extent::Sentence => ends(&tokens, end, |token| token.is_mark(Mark::Stop)),
             };
             let tells = |token: &Token| {
@@ -138,17 +139,19 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
 
 /// Where a clause ends that asks for nothing: before a mark, and before what somebody does after it: `because he is late and stops`.
 /// It ends at once where it tells of somebody new, who is there.
-fn clause_end(tokens: &[Token], from: usize) -> usize {
+fn clause_end(tokens: &[Token], from: usize, words: &Words) -> usize {
     let acts = |at: usize| tokens.get(at + 1).is_some_and(|next| next.is(Sort::Verb) && next.bent == Bent::S);
     let marked = |token: &Token| matches!(token.kind, Kind::Mark(mark) if mark != Mark::Quote);
     let end = ends(tokens, from, marked);
     let joined = (from..end).find(|at| tokens.get(*at).is_some_and(|token| token.is(Sort::And)) && acts(*at));
     let said = tokens.get(from..end).unwrap_or_default();
-    let new = said.windows(2).any(|two| match two {
-        [one, role] => (one.is(Sort::Indefinite) || one.number().is_some()) && role.is(Sort::Role),
-        _ => false,
-    });
-    if new { from } else { joined.unwrap_or(end) }
+    let one = |token: &Token| {
+        token.is(Sort::Indefinite) || words.numbers.contains_key(&token.lemma) || token.number().is_some()
+    };
+    let new = said.iter().position(one).is_some_and(|at| said.iter().skip(at).any(|token| token.is(Sort::Role)));
+    // Nor is what somebody says.
+    let quoted = said.iter().any(|token| token.is_mark(Mark::Quote));
+    if new || quoted { from } else { joined.unwrap_or(end) }
 }
 
 fn ends(tokens: &[Token], from: usize, is: impl Fn(&Token) -> bool) -> usize {

@@ -13,7 +13,7 @@ use crate::chunk::{Chunk, Is};
 use crate::clause::{Clause, Condition, Join, Measure, Predicate, Tie};
 use crate::find::longest;
 use crate::lexicon::Lexicon;
-use crate::noun::{Head, Noun};
+use crate::noun::{Head, Noun, Pick};
 use crate::parser::{Parser, names_somebody};
 use crate::token::{Bent, Mark, Sort};
 
@@ -70,6 +70,11 @@ impl Parser<'_> {
                     }
                 }
                 continue;
+            }
+            // `two people come out, first a nurse and then a porter`: who they are.
+            let first_of = self.peek().is_some_and(|chunk| chunk.lemma == "first") && self.found.len() > first;
+            if first_of && self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some) {
+                join = Join::Colon;
             }
             let start = self.at;
             let before = self.subject.clone();
@@ -181,7 +186,8 @@ impl Parser<'_> {
         let other = clause.own && clause.subject.iter().all(|noun| noun.head == Head::Bare);
         // `first a nurse comes out, then a guest`
         let bare = clause.places.is_empty() && clause.left.is_empty() && clause.looks.is_empty();
-        let next = clause.join == Join::Then && clause.own && bare && clause.subject.iter().all(names_somebody);
+        let who = self.peek().is_some_and(|chunk| chunk.word(Sort::Who));
+        let next = clause.join == Join::Then && clause.own && !who && bare && clause.subject.iter().all(names_somebody);
         // `robot goal: the exit`
         let part = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.part.is_some());
         let part = !clause.own

@@ -285,7 +285,8 @@ impl Story {
             let follows = relation == Relation::Behind;
             let stands = person.relation.is_none() || person.relation == Some(Relation::Static) && !follows;
             // Whoever comes out and crosses is met as they cross.
-            let crosses = person.relation == Some(Relation::Leaving) && relation == Relation::Crossing;
+            let crosses = person.relation == Some(Relation::Leaving) && relation == Relation::Crossing
+                || person.relation == Some(Relation::Staying) && relation == Relation::Leaving;
             if stands || crosses {
                 person.relation = Some(relation);
             }
@@ -300,6 +301,11 @@ impl Story {
             if person.steps.first().as_ref().is_some_and(blocks) {
                 person.relation = Some(Relation::Static);
             }
+        }
+        // Whoever comes out, or stays inside, is where the robot goes.
+        let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
+        if self.place.is_none() && (there || self.people.iter().any(inside)) {
+            self.place = self.robot_goal;
         }
         // Of several, some of whom come out, those who stay are inside.
         if self.people.iter().any(|person| person.relation == Some(Relation::Leaving)) {
@@ -326,11 +332,6 @@ impl Story {
             {
                 person.relation = Some(Relation::Staying);
             }
-        }
-        // Whoever comes out, or stays inside, is where the robot goes.
-        let inside = |person: &Person| matches!(person.relation, Some(Relation::Leaving | Relation::Staying));
-        if self.place.is_none() && (there || self.people.iter().any(inside)) {
-            self.place = self.robot_goal;
         }
         // In the open nobody is inside.
         let open = self.place.is_some_and(|place| {
