@@ -225,6 +225,11 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
     while let Some((next, of)) = longest(end).filter(|_| tokens.get(end).is_some_and(|token| token.bent != Bent::Ing)) {
         (end, row) = (next, of);
     }
+    // `the door of the meeting room` is a door.
+    if tokens.get(end).is_some_and(|token| token.is(Sort::Of)) {
+        let article = tokens.get(end + 1).is_some_and(|token| token.is(Sort::Definite) || token.is(Sort::Indefinite));
+        end = longest(end + 1 + usize::from(article)).map_or(end, |(of, _)| of);
+    }
     // `room 214`, `ward B`.
     let named = |token: &Token| {
         token.number().is_some() || token.spelled.len() == 1 && token.sorts.is_empty() && token.kind == Kind::Word

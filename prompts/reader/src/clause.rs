@@ -89,6 +89,8 @@ pub(crate) struct Clause {
     pub(crate) not: bool,
     /// Whether it is asked.
     pub(crate) asks: bool,
+    /// Whether what is denied in it never happens: `never`, `at no time`.
+    pub(crate) never: bool,
     /// Whether its subject stands in it.
     pub(crate) own: bool,
     /// Whose acts; of an ellipsis, those of the clause before. Empty where nobody was named yet.
@@ -129,6 +131,7 @@ impl Clause {
             join,
             not: false,
             asks: false,
+            never: false,
             own: false,
             subject: Vec::new(),
             acts: Vec::new(),

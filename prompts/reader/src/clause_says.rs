@@ -47,7 +47,9 @@ impl Maker<'_> {
         let people: Vec<Noun> =
             clause.subject.iter().filter(|noun| noun.may_be_person() && noun.head != Head::It).cloned().collect();
         let mixed = !people.is_empty() && people.len() < clause.subject.len();
-        let of_people = mixed.then(|| Clause { subject: people, ..clause.clone() });
+        let others = clause.subject.iter().filter(|noun| !people.contains(noun)).map(|noun| noun.tokens.clone());
+        let goes = clause.goes.iter().cloned().chain(others).collect();
+        let of_people = mixed.then(|| Clause { subject: people.clone(), goes, ..clause.clone() });
         let clause = of_people.as_ref().unwrap_or(clause);
         self.partly = !clause.left.is_empty() || clause.acts.is_empty() && !clause.looks.is_empty();
         let start = self.found.len();

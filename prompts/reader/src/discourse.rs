@@ -76,6 +76,7 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
     let unknown: People =
         (0..told.roles.len()).filter(|person| !known(*person) || anybody(person) && !all_anybody).collect();
     let mut all = told.statements.clone();
+    all.extend(opposites(told));
     if unknown.len() < told.roles.len() {
         for statement in &told.statements {
             if matches!(&statement.says, Says::Introduce(who) if who.iter().any(|person| unknown.contains(person))) {
@@ -85,6 +86,31 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
     }
     all
 }
+/// Statements that somebody does what they never do, or do not do and do whatever happens: the later one of two is not played.
+fn opposites(told: &Told) -> Vec<Statement<People>> {
+    let deed =
+        |statement: &Statement<People>| if let Says::Do(deed) = &statement.says { Some(deed.clone()) } else { None };
+    let deeds: Vec<(&Statement<People>, Deed<People>)> =
+        told.statements.iter().filter_map(|statement| Some((statement, deed(statement)?))).collect();
+    let mut found = Vec::new();
+    for (at, (statement, later)) in deeds.iter().enumerate() {
+        let opposite = deeds.iter().take(at).any(|(_, before)| {
+            let (denied, done) = if before.not { (before, later) } else { (later, before) };
+            let always = denied.when.is_empty() && done.when.is_empty() && done.until.is_empty();
+            before.act == later.act
+                && before.not != later.not
+                && before.act != Act::Sign
+                && later.who.iter().any(|person| before.who.contains(person))
+                && (denied.never || always)
+        });
+        if opposite {
+            let why = "the text says the opposite as well".to_owned();
+            found.push(Statement { says: Says::NotPlayed(why), ..(*statement).clone() });
+        }
+    }
+    found
+}
+
 impl Cast {
     pub(crate) fn begin(&mut self, statement: &Statement<Named>) {
         if !self.fresh.is_empty() {
@@ -257,8 +283,20 @@ impl Cast {
             self.pending.clone_from(&until);
         }
         let ongoing = deed.ongoing;
-        let deed =
-            Deed { ongoing, who, act, whom, not: deed.not, when, until, for_s: deed.for_s, says, obeys: deed.obeys };
+        let never = deed.never;
+        let deed = Deed {
+            ongoing,
+            never,
+            who,
+            act,
+            whom,
+            not: deed.not,
+            when,
+            until,
+            for_s: deed.for_s,
+            says,
+            obeys: deed.obeys,
+        };
         self.done = Some(deed.clone());
         deed
     }

@@ -48,6 +48,7 @@ impl Reader<'_> {
         let mut noun = Noun::new(head, self.at..self.at + 1);
         noun.several = noun.head == Head::They;
         noun.nominative = token.is(Sort::Nominative);
+        noun.reflexive = token.is(Sort::Fill) && noun.head != Head::It;
         noun.female = gender(token);
         if matches!(noun.head, Head::Role(_)) {
             noun.pick = Pick::Some;

@@ -71,6 +71,8 @@ pub(crate) struct Noun {
     pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
     pub(crate) generic: bool,
+    /// Whether it says no more than the subject: `herself`.
+    pub(crate) reflexive: bool,
     /// Whether the role says how somebody stands to others: `colleague`.
     pub(crate) mate: bool,
     /// Whether the role says no more than can be seen of anybody: `boy`.
@@ -102,6 +104,7 @@ impl Noun {
             nominative: false,
             female: None,
             generic: false,
+            reflexive: false,
             mate: false,
             by_looks: false,
             known_by: None,

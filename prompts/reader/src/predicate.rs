@@ -107,19 +107,26 @@ impl Parser<'_> {
             }
         } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
             clause.not = true;
+            clause.never |= chunk.word(Sort::Never);
             clause.denials.push(chunk.tokens.clone());
             clause.does = clause.does.map(|_| false);
         } else if chunk.word(Sort::Slow) {
             clause.pace_mps = Some(pace(SLOW_MPS, chunk));
         } else if chunk.word(Sort::Brisk) {
             clause.pace_mps = Some(pace(BRISK_MPS, chunk));
-        } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) {
+        } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) || self.counts_things() {
             clause.looks.extend(chunk.tokens.clone());
         } else if !says_nothing(chunk) {
             clause.verbal |= matches!(chunk.bent, Bent::S | Bent::Ed);
             clause.left.extend(chunk.tokens.clone());
         }
         self.at += 1;
+    }
+
+    /// `two racks`: a number of things.
+    fn counts_things(&self) -> bool {
+        let number = self.peek().is_some_and(|chunk| self.lexicon.words.numbers.contains_key(&chunk.lemma));
+        number && self.ahead(1).is_some_and(|next| next.word(Sort::Thing) && next.bent == Bent::S)
     }
 
     /// `Robot: "excuse me"`: what is said, without a word for saying it.
@@ -187,6 +194,7 @@ impl Parser<'_> {
         }
         if frame.is_some_and(|frame| frame.denies) {
             clause.not = !clause.not;
+            clause.never |= frame.is_some_and(|frame| frame.never);
             clause.denials.push(start..self.token());
             return;
         }

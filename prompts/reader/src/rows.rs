@@ -121,6 +121,8 @@ pub(crate) struct Frame {
     pub(crate) obeys: bool,
     /// Whether it denies what is said next: `refuses to`.
     pub(crate) denies: bool,
+    /// Whether what it denies never happens.
+    pub(crate) never: bool,
     /// Whether nothing is to be seen of it, and why.
     pub(crate) background: Option<Background>,
     /// Why it is not played.

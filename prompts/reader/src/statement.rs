@@ -78,6 +78,8 @@ pub struct Deed<W> {
     pub whom: Option<W>,
     /// Whether they do not.
     pub not: bool,
+    /// Whether they do not do it in the whole run.
+    pub never: bool,
     /// All of these have to hold.
     pub when: Vec<Reason<W>>,
     /// It ends when this holds.
@@ -100,6 +102,7 @@ impl<W> Deed<W> {
             act,
             whom: None,
             not: false,
+            never: false,
             ongoing: false,
             when: Vec::new(),
             until: Vec::new(),

@@ -41,7 +41,9 @@ impl Parser<'_> {
         } else if by && clause.acts.iter().any(|act| act.passive) {
             clause.agent = Some(noun);
         } else {
-            if !with {
+            if noun.reflexive {
+                clause.goes.push(noun.tokens.clone());
+            } else if !with {
                 clause.left.extend(noun.tokens.clone());
             }
             if names_somebody(&noun) {

@@ -53,6 +53,7 @@ impl Whole<'_> {
         let ongoing = said.ongoing;
         Deed {
             ongoing,
+            never: not && clause.never,
             who,
             act,
             whom,

@@ -72,6 +72,8 @@ pub(crate) enum Sort {
     Label,
     /// A role towards others: `colleague`.
     Mate,
+    /// Denies it for the whole run: `never`.
+    Never,
     /// Before what somebody is let do: `lets her go`.
     Lets,
     /// Before a word for a group that tells how people stand: `in a group`, `form a pair`.
@@ -92,7 +94,7 @@ pub(crate) enum Sort {
 
 /// A set of sorts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Sorts(u64);
+pub(crate) struct Sorts(u128);
 
 impl Sorts {
     pub(crate) const fn with(self, sort: Sort) -> Self {
