@@ -411,7 +411,7 @@ impl Reader<'_> {
             // `the last turn their heads`
             let owned = self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::Possessive) || next.is(Sort::To));
             !token.is_said()
-                || token.is(Sort::Verb) && token.is(Sort::Empty) && owned
+                || token.is(Sort::Verb) && (token.is(Sort::Empty) && owned || token.bent == Bent::S)
                 || !token.is(Sort::Empty) && joins.iter().any(|sort| token.is(*sort))
                 || token.spelled.ends_with("ly")
                 || token.is(Sort::Fill) && !token.is(Sort::Empty)

@@ -18,16 +18,20 @@ impl Parser<'_> {
             |found: &Found| longest(self.chunks, self.at + 1, patterns).is_some_and(|inner| inner.end > found.end);
         let found = longest(self.chunks, self.at, patterns).filter(|found| !denies || !longer(found));
         // `start` alone is a part of the robot's way where it stands before one: `start: the ward`.
-        let label = |found: &Found| {
+        let applies = |found: &Found| {
             let part = self
                 .lexicon
                 .frames
                 .get(found.row)
                 .is_some_and(|frame| frame.part.is_some() && !frame.goes && frame.relate.is_none());
             let marked = self.chunks.get(found.end).is_some_and(|next| next.is_mark(Mark::Colon));
-            !part || found.place.is_some() || found.end > self.at + 1 || marked
+            // `the start of the run`
+            let article = self.before().is_some_and(|before| before.word(Sort::Definite) && !before.word(Sort::Who));
+            let plain = self.lexicon.frames.get(found.row).is_some_and(|frame| frame.plain);
+            let noun = article && plain && found.end == self.at + 1;
+            (!part || found.place.is_some() || found.end > self.at + 1 || marked) && !noun
         };
-        let found = found.filter(label);
+        let found = found.filter(applies);
         let matches = found.is_some();
         if let Some(found) = found {
             self.predicate(found, clause);
