@@ -158,6 +158,7 @@ fn owns(tokens: &[Token], at: usize) -> bool {
             || next.is(Sort::At)
             || next.is(Sort::Definite)
             || next.number().is_some()
+            || next.is(Sort::Fill) && tokens.get(at + 2).is_some_and(|behind| behind.is(Sort::At))
     };
     ends && next.is_some_and(|next| !is(next))
 }

@@ -113,6 +113,7 @@ impl Reader<'_> {
                 || digit
                 || sorts.iter().any(|sort| next.is(*sort))
                 || next.is(Sort::Verb) && next.bent == Bent::S
+                || next.is(Sort::From)
                 || next.sorts == only
                 || next.is_mark(Mark::Comma)
                 || next.is_mark(Mark::Open)

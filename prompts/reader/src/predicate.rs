@@ -93,6 +93,10 @@ impl Parser<'_> {
         if quoted && !(clause.subject.is_empty() && self.subject.is_empty()) && self.said(clause) {
             return;
         }
+        if self.lets_somebody(clause) {
+            self.at += 1;
+            return;
+        }
         if self.framed(clause) {
             return;
         }
@@ -125,6 +129,13 @@ impl Parser<'_> {
             clause.left.extend(chunk.tokens.clone());
         }
         self.at += 1;
+    }
+
+    /// `let a guard stop it`: what is asked for is that the guard does it.
+    fn lets_somebody(&self, clause: &Clause) -> bool {
+        let lets = self.peek().is_some_and(|chunk| chunk.word(Sort::Lets) && chunk.bent == Bent::Base);
+        let somebody = self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some);
+        lets && somebody && clause.is_bare() && !clause.own && clause.subject.is_empty()
     }
 
     /// `two racks`: a number of things.

@@ -127,6 +127,7 @@ impl Words {
             let noun = [Sort::Role, Sort::People, Sort::Indefinite].iter().any(|sort| self.sorts(base).has(*sort));
             let bent = match ENDINGS.iter().find(|(end, _, _)| word.ends_with(end)) {
                 _ if base == word => Bent::Base,
+                Some((_, _, Bent::Ed | Bent::Ing)) if noun => Bent::Base,
                 Some((_, _, bent)) => *bent,
                 // `women` are several, and a `ped` is one.
                 None if noun && word.ends_with("en") => Bent::S,
