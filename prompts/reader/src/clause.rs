@@ -7,9 +7,10 @@ use socrates_model::{Gesture, PlaceClass};
 use crate::noun::Noun;
 
 /// How a clause follows the one before it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Join {
     /// A sentence begins.
+    #[default]
     Start,
     /// `and`, a comma.
     And,

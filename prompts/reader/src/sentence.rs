@@ -17,6 +17,23 @@ use crate::noun::{Head, Noun, Pick};
 use crate::parser::{Parser, names_somebody};
 use crate::token::{Bent, Mark, Sort};
 
+/// Where a sentence stands.
+#[derive(Default)]
+struct Sentence {
+    /// Its first clause among those found.
+    first: usize,
+    /// Conditions that belong to the clause that comes next.
+    pending: Vec<Condition>,
+    /// What was said when before the clauses for which it holds.
+    ahead: Vec<Condition>,
+    /// `Ten seconds later …`: of the acts that follow.
+    later: Option<Measure>,
+    /// How the next clause follows.
+    join: Join,
+    /// Whether a mark or a join stands before it.
+    apart: bool,
+}
+
 /// The clauses of a text.
 pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
     let mut parser = Parser::new(chunks, lexicon);
@@ -28,106 +45,106 @@ pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
 
 impl Parser<'_> {
     pub(crate) fn sentence(&mut self) {
-        let mut pending: Vec<Condition> = Vec::new();
-        // What was said when before the clauses for which it holds.
-        let mut ahead: Vec<Condition> = Vec::new();
-        let first = self.found.len();
-        // `Ten seconds later …`: of the acts that follow.
-        let mut later: Option<Measure> = None;
-        let mut join = Join::Start;
-        let mut apart = true;
+        let mut own = Sentence { first: self.found.len(), apart: true, ..Sentence::default() };
         while let Some(chunk) = self.peek() {
             if chunk.is_mark(Mark::Stop) {
                 let asks = chunk.spelled == "?";
-                for clause in self.found.iter_mut().skip(first) {
+                for clause in self.found.iter_mut().skip(own.first) {
                     clause.asks = asks;
                 }
                 self.at += 1;
                 break;
             }
-            if let Some(next) = self.joins(join) {
-                (join, apart) = (next, true);
+            if let Some(next) = self.joins(own.join) {
+                (own.join, own.apart) = (next, true);
                 self.at += 1;
-                continue;
+            } else if let Some(tie) = self.tie() {
+                self.tied(tie, &mut own);
+            } else {
+                self.next_clause(&mut own);
             }
-            if let Some(tie) = self.tie() {
-                let condition = self.condition(tie);
-                let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
-                let before = self.found.len() > first && (!apart || !more || tie == Tie::Unless);
-                let own = self.found.get(first..).unwrap_or_default();
-                let acts = own.iter().rposition(|clause| !clause.acts.is_empty() || clause.does.is_some());
-                let clause = acts.filter(|_| !more).map(|at| first + at).or_else(|| self.found.len().checked_sub(1));
-                match clause.and_then(|at| self.found.get_mut(at)).filter(|_| before) {
-                    Some(clause) => clause.conditions.push(condition),
-                    None => {
-                        if pending.is_empty() {
-                            ahead.clear();
-                        }
-                        if matches!(condition.tie, Tie::When | Tie::After) {
-                            ahead.push(condition.clone());
-                        }
-                        pending.push(condition);
-                    }
-                }
-                continue;
-            }
-            // `two people come out, first a nurse and then a porter`: who they are.
-            let first_of = self.peek().is_some_and(|chunk| chunk.lemma == "first") && self.found.len() > first;
-            if first_of && self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some) {
-                join = Join::Colon;
-            }
-            let start = self.at;
-            let before = self.subject.clone();
-            let mut clause = self.clause(join, false);
-            // What may not begin a clause is left over.
-            if self.at == start {
-                clause.left.extend(self.peek().into_iter().flat_map(|chunk| chunk.tokens.clone()));
-                self.at += 1;
-            }
-            clause.tokens.end = self.token().max(clause.tokens.end);
-            if self.is_condition(&clause, start, first) {
-                let condition = Condition { tie: Tie::When, clause };
-                if start > 0 && self.chunks.get(start - 1).is_some_and(|before| before.is_mark(Mark::Open)) {
-                    self.found.last_mut().into_iter().for_each(|last| last.conditions.push(condition.clone()));
-                } else {
-                    pending.push(condition);
-                }
-                continue;
-            }
-            let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
-            if clause.acts.is_empty() && clause.after_s.is_some() && more {
-                later = clause.after_s.take();
-            } else if !clause.acts.is_empty() && clause.conditions.is_empty() && clause.after_s.is_none() {
-                clause.after_s = later.take();
-            }
-            let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
-            if clause.acts.iter().all(plain)
-                && clause.subject == before
-                && self.found.len() > first
-                && self.adds(&clause)
-            {
-                continue;
-            }
-            if clause.conditions.is_empty() || !pending.is_empty() {
-                clause.conditions.append(&mut pending);
-            }
-            if clause.conditions.is_empty() && clause.after_s.is_none() && clause.join != Join::Then {
-                clause.conditions.clone_from(&ahead);
-            }
-            self.gap(&mut clause, first);
-            self.share(&mut clause, first);
-            self.front(&clause, first);
-            self.found.push(clause);
-            (join, apart) = (Join::And, false);
         }
-        if let Some(condition) = pending.pop() {
-            let mut clause = Clause::new(join, condition.clause.tokens.start);
+        if let Some(condition) = own.pending.pop() {
+            let mut clause = Clause::new(own.join, condition.clause.tokens.start);
             clause.tokens = condition.clause.tokens.clone();
             clause.subject = condition.clause.subject.clone();
             clause.conditions.push(condition);
-            clause.conditions.append(&mut pending);
+            clause.conditions.append(&mut own.pending);
             self.found.push(clause);
         }
+    }
+
+    /// A condition: of the clause before it, or of those that follow.
+    fn tied(&mut self, tie: Tie, own: &mut Sentence) {
+        let condition = self.condition(tie);
+        let first = own.first;
+        let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
+        let before = self.found.len() > first && (!own.apart || !more || tie == Tie::Unless);
+        let said = self.found.get(first..).unwrap_or_default();
+        let acts = said.iter().rposition(|clause| !clause.acts.is_empty() || clause.does.is_some());
+        let clause = acts.filter(|_| !more).map(|at| first + at).or_else(|| self.found.len().checked_sub(1));
+        match clause.and_then(|at| self.found.get_mut(at)).filter(|_| before) {
+            Some(clause) => clause.conditions.push(condition),
+            None => {
+                if own.pending.is_empty() {
+                    own.ahead.clear();
+                }
+                if matches!(condition.tie, Tie::When | Tie::After) {
+                    own.ahead.push(condition.clone());
+                }
+                own.pending.push(condition);
+            }
+        }
+    }
+
+    /// A clause, with what was said before it and holds of it.
+    fn next_clause(&mut self, own: &mut Sentence) {
+        let first = own.first;
+        // `two people come out, first a nurse and then a porter`: who they are.
+        let first_of = self.peek().is_some_and(|chunk| chunk.lemma == "first") && self.found.len() > first;
+        if first_of && self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some) {
+            own.join = Join::Colon;
+        }
+        let start = self.at;
+        let before = self.subject.clone();
+        let mut clause = self.clause(own.join, false);
+        // What may not begin a clause is left over.
+        if self.at == start {
+            clause.left.extend(self.peek().into_iter().flat_map(|chunk| chunk.tokens.clone()));
+            self.at += 1;
+        }
+        clause.tokens.end = self.token().max(clause.tokens.end);
+        if self.is_condition(&clause, start, first) {
+            let condition = Condition { tie: Tie::When, clause };
+            let opened = start.checked_sub(1).and_then(|at| self.chunks.get(at));
+            match self.found.last_mut().filter(|_| opened.is_some_and(|before| before.is_mark(Mark::Open))) {
+                Some(last) => last.conditions.push(condition),
+                None => own.pending.push(condition),
+            }
+            return;
+        }
+        let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
+        if clause.acts.is_empty() && clause.after_s.is_some() && more {
+            own.later = clause.after_s.take();
+        } else if !clause.acts.is_empty() && clause.conditions.is_empty() && clause.after_s.is_none() {
+            clause.after_s = own.later.take();
+        }
+        let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
+        let same = clause.acts.iter().all(plain) && clause.subject == before && self.found.len() > first;
+        if same && self.adds(&clause) {
+            return;
+        }
+        if clause.conditions.is_empty() || !own.pending.is_empty() {
+            clause.conditions.append(&mut own.pending);
+        }
+        if clause.conditions.is_empty() && clause.after_s.is_none() && clause.join != Join::Then {
+            clause.conditions.clone_from(&own.ahead);
+        }
+        self.gap(&mut clause, first);
+        self.share(&mut clause, first);
+        self.front(&clause, first);
+        self.found.push(clause);
+        (own.join, own.apart) = (Join::And, false);
     }
 
     /// `at 2 m he stops`, `he stops (robot within 2 m)`: a clause that tells no more than when another holds.
