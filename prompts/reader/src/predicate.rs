@@ -3,7 +3,7 @@
 use crate::chunk::{Amount, Chunk, Is};
 use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
-use crate::noun::{BRISK_MPS, Pick, SLOW_MPS};
+use crate::noun::{BRISK_MPS, Head, Pick, SLOW_MPS};
 use crate::parser::{Parser, says_nothing};
 use crate::token::{Bent, Mark, Sort};
 use socrates_model::{Gesture, PlaceClass};
@@ -234,6 +234,9 @@ impl Parser<'_> {
             };
             if let Some((end, gesture)) = best {
                 self.at = end;
+                // `raises his hand to stop the robot`
+                let robot = self.peek().and_then(Chunk::noun).is_some_and(|noun| noun.head == Head::Robot);
+                self.at += usize::from(robot && !quoted);
                 while self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Quote)) {
                     self.at += 1;
                 }

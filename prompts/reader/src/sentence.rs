@@ -45,7 +45,10 @@ pub(crate) fn clauses(chunks: &[Chunk], lexicon: &Lexicon) -> Vec<Clause> {
 
 impl Parser<'_> {
     pub(crate) fn sentence(&mut self) {
-        let mut own = Sentence { first: self.found.len(), apart: true, ..Sentence::default() };
+        // What follows a semicolon goes on with the sentence.
+        let goes_on = self.before().is_some_and(|before| before.spelled == ";");
+        let join = if goes_on { Join::And } else { Join::Start };
+        let mut own = Sentence { first: self.found.len(), apart: true, join, ..Sentence::default() };
         while let Some(chunk) = self.peek() {
             if chunk.is_mark(Mark::Stop) {
                 let asks = chunk.spelled == "?";
