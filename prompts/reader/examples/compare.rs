@@ -140,13 +140,17 @@ fn tail(act: &str, rest: &[&str]) -> String {
     }
 }
 
-/// What each row earns: the facts that are right with it and not without it, and in how many requests, of what is worked on.
+/// What each row earns: the facts that are right with it and not without it, and in how many requests, of what is worked on. A
+/// request all of whose facts are right and of which nothing is said to be unread counts as one more.
+
 fn ablate(files: Files<'_>, whole: &Reader) {
     let cases: Vec<Case> = corpora().into_iter().filter(|(aside, _)| !aside).flat_map(|(_, cases)| cases).collect();
     let right = |reader: &Reader| -> Vec<i64> {
         let of = |case: &Case| {
             let view = new_view(&reader.read(&case.text));
-            i64::try_from(case.facts.iter().filter(|fact| view.holds(fact)).count()).unwrap_or_default()
+            let right = case.facts.iter().filter(|fact| view.holds(fact)).count();
+            let whole = right == case.facts.len() && !view.honest;
+            i64::try_from(right + usize::from(whole)).unwrap_or_default()
         };
         cases.iter().map(of).collect()
     };

@@ -58,7 +58,7 @@ impl Maker<'_> {
         if named.is_some_and(|noun| clause.conditions.iter().any(|when| when.clause.tokens.start > noun.tokens.start)) {
             self.are_there(clause.subject.clone());
         }
-        let Times { when, until, turned, used } = self.times(clause);
+        let Times { when, until, turned, used, then } = self.times(clause);
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
         self.places(clause, robot);
         for noun in clause.subject.iter().filter(|noun| noun.group && noun.several) {
@@ -105,6 +105,9 @@ impl Maker<'_> {
             self.say(used.first().cloned().unwrap_or(0..0), Says::Then(reason.clone()));
         }
         self.with_the_rest(clause, start, &when, used);
+        for next in then {
+            self.clause(&next);
+        }
     }
 
     /// A condition that is no reason: `while the other walks on` is a clause of its own.
@@ -250,7 +253,9 @@ impl Maker<'_> {
             self.say(tokens, Says::Relate(vec![other], Some(relation), frame.side));
             return;
         }
-        let drives = frame.goes && !act.not && (frame.part.is_none() || !whole.clause.places.is_empty());
+        let drives = (frame.goes || frame.part.is_some())
+            && !act.not
+            && (frame.part.is_none() || !whole.clause.places.is_empty());
         let silent = cue.is_none() && person.is_none() && !drives;
         if silent && !frame.plain {
             self.say(tokens, Says::NotRead);

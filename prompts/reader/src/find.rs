@@ -101,6 +101,16 @@ fn takes(chunks: &[Chunk], part: &Part, found: &mut Found) -> bool {
     let Some(chunk) = chunks.get(found.end) else { return false };
     let fits = match (part, &chunk.is) {
         (Part::Word(words), Is::Word | Is::Place(_)) => {
+            // `moves after the robot has stopped` is no `after the robot`.
+            let next = chunks.get(found.end + 2);
+            let finite = next.is_some_and(|next| {
+                [Sort::Have, Sort::Be, Sort::Modal].iter().any(|sort| next.word(*sort))
+                    || next.word(Sort::Verb) && next.bent == Bent::S
+            });
+            let noun = chunks.get(found.end + 1).is_some_and(|next| next.noun().is_some());
+            if chunk.word(Sort::After) && noun && finite {
+                return false;
+            }
             let short = chunk.spelled == OWNS && ["be", "have"].iter().any(|word| words.contains(*word));
             (words.contains(&chunk.lemma) || words.contains(&chunk.spelled) || short) && chunk.tokens.len() == 1
         }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::clause::{Clause, Condition, Predicate, Tie};
+use crate::clause::{Clause, Condition, Join, Predicate, Tie};
 use crate::maker::Maker;
 use crate::noun::{Head, Noun, Pick};
 use crate::parser::names_somebody;
@@ -15,6 +15,8 @@ pub(crate) struct Times {
     pub(crate) when: Vec<Reason<Named>>,
     pub(crate) until: Vec<Reason<Named>>,
     pub(crate) turned: bool,
+    /// What the same people do then: `stops before walking on`.
+    pub(crate) then: Vec<Clause>,
     pub(crate) used: Vec<Range<usize>>,
 }
 
@@ -105,6 +107,13 @@ impl Maker<'_> {
                 }
                 // `blocks it unless it asks` is done until then.
                 (Some(reason), Tie::Until | Tie::Unless) => times.until.push(reason),
+                (_, Tie::Before)
+                    if condition.clause.subject.is_empty() || condition.clause.subject == clause.subject =>
+                {
+                    let subject = clause.subject.clone();
+                    times.then.push(Clause { subject, join: Join::Then, ..condition.clause.clone() });
+                    continue;
+                }
                 (Some(_), Tie::Before) | (None, _) => {
                     self.beside(condition);
                     continue;
