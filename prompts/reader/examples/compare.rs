@@ -142,7 +142,6 @@ fn tail(act: &str, rest: &[&str]) -> String {
 
 /// What each row earns: the facts that are right with it and not without it, and in how many requests, of what is worked on. A
 /// request all of whose facts are right and of which nothing is said to be unread counts as one more.
-
 fn ablate(files: Files<'_>, whole: &Reader) {
     let cases: Vec<Case> = corpora().into_iter().filter(|(aside, _)| !aside).flat_map(|(_, cases)| cases).collect();
     let right = |reader: &Reader| -> Vec<i64> {

@@ -251,6 +251,10 @@ impl Cast {
             (Pick::Another, _) => {
                 free.into_iter().filter(|person| !self.last.contains(person)).take(count.unwrap_or(1)).collect()
             }
+            // `the older one`, then `the younger one`
+            (Pick::The, None) if noun.compared && !free.is_empty() => {
+                free.into_iter().take(count.unwrap_or(1)).collect()
+            }
             (Pick::The, None) => base.iter().copied().take(count.unwrap_or(1)).collect(),
             (Pick::Plain | Pick::Some, None) => free.into_iter().take(count.unwrap_or(1)).collect(),
         };
@@ -315,6 +319,7 @@ impl Cast {
                 (!found.is_empty()).then_some(found)
             }
             _ if known.is_empty() => None,
+            Pick::The if noun.compared && known.len() > 1 && !noun.several => self.picks(noun, &known),
             Pick::The | Pick::Plain if noun.ordinal.is_none() && noun.count.is_none() && !noun.several => {
                 let recent = self.last.iter().rev().find(|person| known.contains(person)).copied();
                 recent

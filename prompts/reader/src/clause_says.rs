@@ -183,7 +183,7 @@ impl Maker<'_> {
         let sets_off =
             |reason: &Reason<Named>| matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed | Cue::Stopped);
         let walks = relation.is_some_and(|relation| !relation.stands()) || frame.plain && frame.goes && !act.not;
-        let sets_off = walks && whole.when.iter().any(sets_off);
+        let sets_off = walks && (whole.when.iter().any(sets_off) || whole.clause.after_s.is_some());
         let does = frame
             .denied
             .filter(|_| act.not)

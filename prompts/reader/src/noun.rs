@@ -71,6 +71,8 @@ pub(crate) struct Noun {
     pub(crate) female: Option<bool>,
     /// Whether the role is that of anybody: `person`.
     pub(crate) generic: bool,
+    /// Whether a word before the role compares them with others: `older`.
+    pub(crate) compared: bool,
     /// Whether it says no more than the subject: `herself`.
     pub(crate) reflexive: bool,
     /// Whether the role says how somebody stands to others: `colleague`.
@@ -104,6 +106,7 @@ impl Noun {
             nominative: false,
             female: None,
             generic: false,
+            compared: false,
             reflexive: false,
             mate: false,
             by_looks: false,

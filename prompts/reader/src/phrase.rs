@@ -167,6 +167,12 @@ impl Reader<'_> {
                 || told && token.sorts.is_empty())
     }
 
+    /// Whether a word from here to the role compares people: `the older nurse`.
+    fn compared(&self, start: usize) -> bool {
+        let words = self.tokens.get(start..self.at).unwrap_or_default();
+        words.iter().any(|word| word.is(Sort::Looks) && word.spelled.ends_with("er"))
+    }
+
     /// The role, with the words before it.
     fn head(&mut self, noun: &mut Noun, told: bool) -> bool {
         let start = self.at;
@@ -183,6 +189,7 @@ impl Reader<'_> {
             }
             // `the older one`
             if token.lemma == "one" && told && self.at > start {
+                noun.compared = self.compared(start);
                 noun.count = Some(1);
                 self.at += 1;
                 return true;
@@ -202,6 +209,7 @@ impl Reader<'_> {
                     .iter()
                     .map(|token| token.lemma.clone())
                     .collect();
+                noun.compared = self.compared(start);
                 noun.generic = token.is(Sort::People);
                 noun.mate = token.is(Sort::Mate);
                 noun.by_looks = token.is(Sort::Seen);

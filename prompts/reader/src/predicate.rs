@@ -166,7 +166,7 @@ impl Parser<'_> {
     }
 
     fn predicate(&mut self, found: Found, clause: &mut Clause) {
-        let start = self.token();
+        let (start, at) = (self.token(), self.at);
         let be = self.before().is_some_and(|before| before.word(Sort::Be));
         let ongoing = be && self.peek().is_some_and(|chunk| chunk.bent == Bent::Ing);
         for between in &found.between {
@@ -214,8 +214,21 @@ impl Parser<'_> {
             return;
         }
         let tokens = start..self.token();
-        let act =
-            Predicate { ongoing, row: found.row, object, owner: found.owner, not: clause.not, passive, sign, tokens };
+        // `makes no room`
+        let own = self.chunks.get(at..found.end).unwrap_or_default();
+        let none =
+            own.iter().any(|chunk| chunk.is == Is::Word && chunk.sorts.has(Sort::No) && !chunk.sorts.has(Sort::Fill));
+        let none = none && frame.is_some_and(|frame| frame.act.is_some() && !frame.plain);
+        let act = Predicate {
+            ongoing,
+            row: found.row,
+            object,
+            owner: found.owner,
+            not: clause.not != none,
+            passive,
+            sign,
+            tokens,
+        };
         clause.acts.push(act);
     }
 
