@@ -5,12 +5,11 @@ use std::ops::Range;
 
 use socrates_model::PlaceClass;
 
-use crate::lex::OWNS;
 use crate::lexicon::Lexicon;
 use crate::normalize::end_of;
 use crate::noun::{Head, Noun};
 use crate::phrase::noun;
-use crate::token::{Bent, Kind, Mark, Sort, Sorts, Token};
+use crate::token::{Bent, Kind, Mark, OWNS, Sort, Sorts, Token};
 
 /// A distance or a time.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,9 @@
 //! Finds the row whose pattern matches the most chunks from a place on.
 
 use crate::chunk::{Amount, Chunk, Is};
-use crate::lex::OWNS;
 use crate::noun::Noun;
 use crate::pattern::{AMOUNT, Part, Pattern, Patterns};
-use crate::token::{Bent, Sort};
+use crate::token::{Bent, OWNS, Sort};
 use socrates_model::PlaceClass;
 
 /// A row that matches, and what it took.

@@ -6,14 +6,12 @@
 
 use unicode_segmentation::UnicodeSegmentation as _;
 
-use crate::token::{Bent, Kind, Mark, Sort, Token};
+use crate::token::{Bent, Kind, Mark, OWNS, Sort, Token};
 use crate::words::Words;
 
 /// What stands for what it is short of: the rest of a word after its apostrophe.
 const SHORT: &[(&str, &str)] =
     &[("n't", "not"), ("'re", "be"), ("'m", "be"), ("'ll", "will"), ("'ve", "have"), ("'d", "would")];
-/// The possessor's ending, or a short `is`: the chunker decides.
-pub(crate) const OWNS: &str = "'s";
 /// Words of fewer letters are not corrected.
 const CORRECTED_FROM: usize = 5;
 

@@ -1,10 +1,11 @@
-//! The reader of requests: text to statements to a form. No map, no catalog of cards, no geometry, no weights.
+//! The reader of requests: text to statements to a form, and to the reading that the solver takes. No map, no catalog of cards, no geometry, no weights.
 //!
 //! ```text
-//! text ─► tokens ─► scene ─────► chunks ─► clauses ─► statements ──► people ────► story ─► form
-//!         lex       normalize    chunk     clause     statement      discourse    story
-//!         words     scopes       noun      find: rows of frames      who is meant
-//!                   rewrites     places    signs                     └────► account: what became of every word
+//! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story ─► form
+//!         lex       normalize    chunk     sentence        clause_says   discourse    story    form
+//!         words     scopes       phrase    subject         times         cast           │      reading
+//!                   rewrites     name      predicate       maker                        └─► account: what became of every word
+//!                                places    find: rows of frames, signs
 //! ```
 //!
 //! Each pass is a pure function of the one before it, and prints itself ([`Passes`]). Everything lexical is a row of `data/`

@@ -117,7 +117,7 @@ impl Reader<'_> {
                 || next.sorts == only
                 || next.is_mark(Mark::Comma)
                 || next.is_mark(Mark::Open)
-                || next.spelled == crate::lex::OWNS
+                || next.spelled == crate::token::OWNS
         };
         if begins && title.is_none() && !self.tokens.get(at + 1).is_some_and(goes_on) {
             return None;

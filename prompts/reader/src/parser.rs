@@ -2,9 +2,9 @@
 
 use crate::chunk::{Chunk, Is};
 use crate::clause::Clause;
-use crate::lex::OWNS;
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun};
+use crate::token::OWNS;
 
 pub(crate) struct Parser<'a> {
     pub(crate) chunks: &'a [Chunk],

@@ -1,5 +1,5 @@
 //! Statements: what the layers above and below share. A statement says one thing, and of whom: first as the text names them, then
-//! as people ([`crate::discourse`]).
+//! as people (`discourse`).
 //!
 //! ```text
 //! "the nurse steps aside when it is near" ─► The nurse: give_way when Near

@@ -2,10 +2,9 @@
 
 use crate::chunk::{Chunk, Is};
 use crate::clause::{Clause, Predicate};
-use crate::lex::OWNS;
 use crate::noun::{Head, Noun, Pick};
 use crate::parser::{Parser, names_somebody};
-use crate::token::{Bent, Mark, Sort};
+use crate::token::{Bent, Mark, OWNS, Sort};
 
 impl Parser<'_> {
     /// A noun phrase: the subject, more of it, an agent, or somebody named beside.

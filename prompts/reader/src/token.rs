@@ -5,6 +5,9 @@ use std::ops::Range;
 
 use serde::Deserialize;
 
+/// The possessor's ending, or a short `is`: the chunker decides.
+pub(crate) const OWNS: &str = "'s";
+
 /// What a word can be. A word may be of several sorts: `that` is definite and begins a relative clause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -209,7 +212,7 @@ impl Token {
 
     /// Whether a word says nothing of its own.
     pub(crate) fn says_nothing(&self) -> bool {
-        self.kind == Kind::Word && (self.spelled == crate::lex::OWNS || self.sorts.say_nothing())
+        self.kind == Kind::Word && (self.spelled == OWNS || self.sorts.say_nothing())
     }
 
     pub(crate) const fn number(&self) -> Option<f64> {
