@@ -12,7 +12,8 @@ use unicode_segmentation::UnicodeSegmentation as _;
 use crate::cast::People;
 use crate::clause::Clause;
 use crate::normalize::Scene;
-use crate::statement::{Says, Statement};
+use crate::rows::{Act, Cue};
+use crate::statement::{Reason, Says, Statement};
 use crate::story::{Line, Story};
 
 /// What became of a piece of a text.
@@ -88,7 +89,15 @@ impl Fate {
     fn of(says: &Says<People>, story: &Story) -> (Self, u8) {
         let part =
             |class| story.place == Some(class) || story.robot_start == Some(class) || story.robot_goal == Some(class);
+        // A sign that nobody made out is none.
+        let unclear = |reason: &Reason<People>| reason.cue == Cue::Says && reason.sign.is_none();
         match says {
+            Says::Do(deed)
+                if deed.act == Act::Sign && deed.says.is_none()
+                    || !deed.not && deed.when.iter().chain(&deed.until).any(unclear) =>
+            {
+                (Self::NotRead, 3)
+            }
             // People meet the robot in one place: another one that is told is not played.
             Says::Happens(class, _) if !part(*class) && !story.robot_via.contains(class) => {
                 (Self::NotPlayed("people meet the robot in one place".to_owned()), 2)
