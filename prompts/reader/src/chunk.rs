@@ -118,7 +118,8 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
     });
     // `the robot guides a visitor` tells of no guides.
     let one = |token: &Token| token.is(Sort::Robot) || token.is(Sort::Role) && token.bent == Bent::Base;
-    let acts = token.bent == Bent::S && token.is(Sort::Verb) && before.is_some_and(one);
+    let object = tokens.get(at + 1).is_some_and(|next| next.is(Sort::Indefinite) || next.is(Sort::Definite));
+    let acts = token.bent == Bent::S && (token.is(Sort::Verb) || object) && before.is_some_and(one);
     if let Some(noun) = noun(tokens, at, lexicon).filter(|_| !acts) {
         let end = noun.tokens.end;
         if place.is_none_or(|(_, place_end)| place_end < end) {

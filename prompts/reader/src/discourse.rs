@@ -78,14 +78,36 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
     let mut all = told.statements.clone();
     all.extend(opposites(told));
     if unknown.len() < told.roles.len() {
-        for statement in &told.statements {
-            if matches!(&statement.says, Says::Introduce(who) if who.iter().any(|person| unknown.contains(person))) {
-                all.push(Statement { says: Says::NotRead, ..statement.clone() });
-            }
+        for person in unknown {
+            // Where they are named; somebody who is nowhere named, where they are first told of.
+            let of = |statement: &&Statement<People>| people_of(&statement.says).contains(&person);
+            let named = |statement: &&Statement<People>| matches!(&statement.says, Says::Introduce(_));
+            let first = told.statements.iter().filter(of).find(named).or_else(|| told.statements.iter().find(of));
+            all.extend(first.map(|statement| Statement { says: Says::NotRead, ..statement.clone() }));
         }
     }
     all
 }
+/// Of whom something is said.
+fn people_of(says: &Says<People>) -> &[usize] {
+    match says {
+        Says::Introduce(who) | Says::Noted(who) | Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) => who,
+        Says::Do(deed) => &deed.who,
+        Says::RobotSays(..)
+        | Says::Then(_)
+        | Says::Happens(..)
+        | Says::There
+        | Says::GoalThere
+        | Says::RobotVia(_)
+        | Says::RobotStart(_)
+        | Says::RobotGoal(_)
+        | Says::Background(_)
+        | Says::Goes
+        | Says::NotPlayed(_)
+        | Says::NotRead => &[],
+    }
+}
+
 /// Statements that somebody does what they never do, or do not do and do whatever happens: the later one of two is not played.
 fn opposites(told: &Told) -> Vec<Statement<People>> {
     let deed =
