@@ -234,14 +234,11 @@ fn meant(text: &str, words: &Words) -> Option<String> {
     if words.knows_bent(text) {
         return None;
     }
-    let first = text.chars().next();
+    let first = text.chars().next()?;
     let near = |known: &&str| {
-        known.chars().next() == first
-            && known.len().abs_diff(text.len()) <= 1
-            && strsim::osa_distance(known, text) == 1
-            && swapped_or_lost(known, text)
+        known.len().abs_diff(text.len()) <= 1 && strsim::osa_distance(known, text) == 1 && swapped_or_lost(known, text)
     };
-    words.long(CORRECTED_FROM).find(near).map(str::to_owned)
+    words.long(first, CORRECTED_FROM).find(near).map(str::to_owned)
 }
 
 /// Not a letter in place of another: `patent` is no `patient`, `coridor` is a `corridor`.

@@ -162,9 +162,13 @@ impl Words {
         word.len() > 5 && self.person_endings.iter().any(|ending| word.ends_with(ending.as_str()))
     }
 
-    /// Known words of at least this length, for spelling.
-    pub(crate) fn long(&self, letters: usize) -> impl Iterator<Item = &str> {
-        self.sorts.keys().chain(self.forms.keys()).map(String::as_str).filter(move |word| word.len() >= letters)
+    /// Known words that begin with a letter and have at least so many, for spelling.
+    pub(crate) fn long(&self, first: char, letters: usize) -> impl Iterator<Item = &str> {
+        let sorts = self.sorts.range(first.to_string()..).map(|(word, _)| word);
+        let forms = self.forms.range(first.to_string()..).map(|(word, _)| word);
+        let begins = move |word: &&String| word.starts_with(first);
+        let all = sorts.take_while(begins).chain(forms.take_while(begins));
+        all.map(String::as_str).filter(move |word| word.len() >= letters)
     }
 
     /// What a word would be without each ending, for spelling: `aproaches` is `aproach`, bent.
