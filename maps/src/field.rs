@@ -51,7 +51,9 @@ impl DistanceField {
         self.clearance_at_pixel(px, py)
     }
 
-    pub(crate) fn clearance_at_pixel(&self, px: f64, py: f64) -> f64 {
+    /// The same at a continuous pixel position; (0, 0) is the top left corner of the image.
+    #[must_use]
+    pub fn clearance_at_pixel(&self, px: f64, py: f64) -> f64 {
         let (u, v) = (px * 2.0, py * 2.0);
         if u.is_nan() || v.is_nan() || u < 0.0 || v < 0.0 {
             return 0.0;
@@ -66,8 +68,9 @@ impl DistanceField {
         top * (1.0 - down) + bottom * down
     }
 
-    /// Clearance at the middle of a cell, m.
-    pub(crate) fn clearance_of_cell(&self, column: usize, row: usize) -> f64 {
+    /// Clearance at the middle of a cell, m; 0 outside.
+    #[must_use]
+    pub fn clearance_of_cell(&self, column: usize, row: usize) -> f64 {
         self.lattice.get(column.saturating_mul(2) + 1, row.saturating_mul(2) + 1).map_or(0.0, f64::from)
     }
 

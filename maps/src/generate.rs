@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{Cell, DoorKind, DoorOpens, Fault, FaultCode, Grid, Location, Point, Pose, Where};
+use socrates_model::{Cell, Fault, FaultCode, Grid, Location, Point, Pose, Where};
 
 use crate::image::gray_png;
 use crate::plan::{PLAN, Plan};
 use crate::read::{EXTRA, GRAPH, MAP, parse};
+use crate::written;
 
 /// Name of the image.
 const IMAGE: &str = "map.png";
@@ -163,62 +164,25 @@ fn map_yaml(grid: &Grid) -> String {
 }
 
 fn graph_json(plan: &Plan, grid: &Grid) -> String {
-    let quoted = |text: &str| serde_json::Value::from(text).to_string();
-    let node = |node: &crate::plan::PlanNode| {
-        let (px, py) = pixel(grid, node.at);
-        format!("    {{\"id\": {}, \"type\": {}, \"pos\": [{px:.0}, {py:.0}]}}", quoted(&node.id), quoted(&node.kind))
-    };
-    let nodes: Vec<String> = plan.nodes.iter().map(|spanned| node(spanned.get_ref())).collect();
-    let mut links = Vec::new();
-    for edges in plan.edges.iter().map(toml::Spanned::get_ref) {
-        for pair in edges.along.windows(2) {
-            let [from, to] = pair else { continue };
-            let (kind, from, to) = (quoted(&edges.kind), quoted(from), quoted(to));
-            links.push(format!("    {{\"type\": {kind}, \"source\": {from}, \"target\": {to}}}"));
-        }
-    }
-    format!(
-        "{{\n  \"directed\": false,\n  \"multigraph\": false,\n  \"graph\": {{}},\n  \"nodes\": [\n{}\n  ],\n  \"links\": [\n{}\n  ]\n}}\n",
-        nodes.join(",\n"),
-        links.join(",\n")
-    )
+    let nodes = plan.nodes.iter().map(toml::Spanned::get_ref);
+    let nodes = nodes.map(|node| (node.id.as_str(), node.kind.as_str(), pixel(grid, node.at)));
+    let links = plan.edges.iter().map(toml::Spanned::get_ref).flat_map(|edges| {
+        edges.along.windows(2).filter_map(|pair| {
+            let [from, to] = pair else { return None };
+            Some((edges.kind.as_str(), from.as_str(), to.as_str()))
+        })
+    });
+    written::graph_json(nodes, links, 0)
 }
 
 fn extra_toml(plan: &Plan) -> String {
-    let quoted = |text: &str| toml::Value::from(text).to_string();
-    let mut out = format!("description = {}\n", quoted(&plan.description));
-    for door in &plan.doors {
-        let kind = match door.kind {
-            DoorKind::Room => "room",
-            DoorKind::Elevator => "elevator",
-        };
-        let opens = match &door.opens {
-            DoorOpens::Always => "\"always\"".to_owned(),
-            DoorOpens::Never => "\"never\"".to_owned(),
-            DoorOpens::AtTimes(secs) => format!("{{ at_times = {secs:?} }}"),
-            DoorOpens::Near(m) => format!("{{ near = {m:?} }}"),
-            DoorOpens::RobotNear(m) => format!("{{ robot_near = {m:?} }}"),
-            DoorOpens::OnEvent(event) => format!("{{ on_event = {} }}", quoted(event)),
-        };
-        let inside: Vec<String> = door.inside.iter().map(|id| quoted(id.as_str())).collect();
-        out.push_str(&format!(
-            "\n[[doors]]\nid = {}\nkind = \"{kind}\"\nfrom = [{:?}, {:?}]\nto = [{:?}, {:?}]\nopens = {opens}\nhold_s = {:?}\ninside = [{}]\n",
-            quoted(&door.id),
-            door.from.x,
-            door.from.y,
-            door.to.x,
-            door.to.y,
-            door.hold_s,
-            inside.join(", ")
-        ));
-    }
-    out
+    written::location_toml(&plan.description, &plan.doors, |at| format!("[{:?}, {:?}]", at.x, at.y))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use socrates_model::NodeId;
+    use socrates_model::{DoorOpens, NodeId};
 
     const PLAN_TEXT: &str = r#"description = "Two \"rooms\"."
 size_m = [8.0, 5.0]

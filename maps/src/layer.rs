@@ -4,17 +4,23 @@ use socrates_model::{Grid, Point};
 
 /// A value per cell (or lattice point), row by row from the top; reading outside gives `None`.
 #[derive(Debug, Clone)]
-pub(crate) struct Layer<T> {
-    pub(crate) width: usize,
-    pub(crate) values: Vec<T>,
+pub struct Layer<T> {
+    /// Columns.
+    pub width: usize,
+    /// Values row by row from the top.
+    pub values: Vec<T>,
 }
 
 impl<T: Copy> Layer<T> {
-    pub(crate) fn filled(width: usize, height: usize, value: T) -> Self {
+    /// The same value everywhere.
+    #[must_use]
+    pub fn filled(width: usize, height: usize, value: T) -> Self {
         Self { width, values: vec![value; width.saturating_mul(height)] }
     }
 
-    pub(crate) fn get(&self, column: usize, row: usize) -> Option<T> {
+    /// The value at a column and row; `None` outside.
+    #[must_use]
+    pub fn get(&self, column: usize, row: usize) -> Option<T> {
         if column >= self.width {
             return None;
         }
@@ -36,7 +42,8 @@ impl<T: Copy> Layer<T> {
         [column, column.saturating_add(1)].map(|column| self.get(column, row).unwrap_or_default())
     }
 
-    pub(crate) fn set(&mut self, column: usize, row: usize, value: T) {
+    /// Writes a value; nothing happens outside.
+    pub fn set(&mut self, column: usize, row: usize, value: T) {
         if column >= self.width {
             return;
         }

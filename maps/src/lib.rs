@@ -38,12 +38,14 @@ pub mod openings;
 pub mod place;
 pub mod random;
 pub mod shipped;
+pub mod written;
 
 pub use check::check;
 pub use field::{DistanceField, free_disc, nearest_free};
 pub use generate::generate;
 pub use geodesic::Geodesic;
 pub use ground::{Ground, Kept};
-pub use read::{load, load_map, parse};
+pub use layer::Layer;
+pub use read::{EXTRA, GRAPH, MAP, MapWithFiles, load, load_map, load_raw, parse};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

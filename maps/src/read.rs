@@ -8,12 +8,12 @@ use socrates_model::{Fault, FaultCode, GraphEdge, Grid, Location, SceneGraph, Wh
 use crate::field::DistanceField;
 use crate::{check, doors_file, graph_file, image, map_file, route};
 
-/// File of the map's description.
-pub(crate) const MAP: &str = "map.yaml";
-/// File of the scene graph.
-pub(crate) const GRAPH: &str = "scene_graph.json";
-/// Optional file of the description and the doors.
-pub(crate) const EXTRA: &str = "location.toml";
+/// Name of the map's description in a location folder.
+pub const MAP: &str = "map.yaml";
+/// Name of the scene graph in a location folder.
+pub const GRAPH: &str = "scene_graph.json";
+/// Name of the optional file of the description and the doors in a location folder.
+pub const EXTRA: &str = "location.toml";
 
 /// Radius with which an edge is led round walls, m: a person's; then ever slimmer ones are tried.
 const ROUTE_RADII_M: [f64; 3] = [0.3, 0.2, 0.05];
@@ -71,6 +71,17 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
 /// # Errors
 /// Every problem found in the two files.
 pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
+    load_raw(file).map(|(location, _)| location)
+}
+
+/// A map as a location without nodes, and the bytes of its files by their names in a location folder.
+pub type MapWithFiles = (Location, BTreeMap<String, Vec<u8>>);
+
+/// The same with the bytes of both files, that of the description under the name `map.yaml`, as a location folder holds it.
+///
+/// # Errors
+/// As for [`load_map`].
+pub fn load_raw(file: &Path) -> Result<MapWithFiles, Vec<Fault>> {
     let bytes = std::fs::read(file).map_err(|why| {
         vec![Fault::new(FaultCode::MRead, Where::file(file.display()), format!("cannot be read: {why}"))]
     })?;
@@ -87,7 +98,7 @@ pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
     let (soft, hard): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(Fault::is_soft);
     let Some(grid) = grid.filter(|_| hard.is_empty()) else { return Err(hard) };
     let name = file.file_stem().map_or_else(|| "map".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    Ok(Location {
+    let location = Location {
         format: socrates_model::FORMAT,
         description: name.replace(['_', '-'], " "),
         name,
@@ -95,7 +106,8 @@ pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
         graph: SceneGraph::default(),
         doors: Vec::new(),
         warnings: warnings.into_iter().chain(soft.iter().map(ToString::to_string)).collect(),
-    })
+    };
+    Ok((location, files))
 }
 
 /// Whether a file name stays in its folder.

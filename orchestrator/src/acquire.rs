@@ -280,6 +280,7 @@ impl Attempt {
             granted,
             ready: granted,
             counted: false,
+            characters: 0,
         }
     }
 }

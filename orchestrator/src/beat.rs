@@ -35,6 +35,9 @@ impl Turn<'_> {
                 let lease_until = now.saturating_add(self.state.policy.lease_ms);
                 if let Some(job) = self.state.jobs.get_mut(&held.key) {
                     job.lease_until = lease_until;
+                    if let Some(attempt) = job.attempts.last_mut() {
+                        attempt.characters = held.characters;
+                    }
                 }
             }
             verdicts.push((held.key.clone(), held.attempt, verdict));

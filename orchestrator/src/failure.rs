@@ -16,6 +16,7 @@ use crate::bucket::{Bucket, server_of};
 use crate::circuit::Circuit;
 use crate::pipeline;
 use crate::policy::Policy;
+use crate::revision::is_compiled;
 use crate::state::{AttemptEnd, Job, JobState};
 use crate::turn::Turn;
 
@@ -161,6 +162,14 @@ impl Turn<'_> {
         let own = owners.is_empty() || owners.contains(&Some(found_by));
         if !own || !pipeline::is_authored(found_by) {
             return self.send_back(key, failure, &owners, why);
+        }
+        // Compiled again, the same rules are wrong in the same way.
+        if key.stage == Stage::Behaviors && self.scenario(&key.scenario).is_some_and(is_compiled) {
+            let faults = BTreeMap::from([(Stage::Behaviors, failure.faults.clone())]);
+            if !self.repair(&key.scenario, faults) {
+                self.move_to(key, JobState::Dead, format!("{why}, nothing left to try"));
+            }
+            return;
         }
         let same = self.said_before(key, number, &failure.faults);
         let (feedback_tries, reseeds) = (self.state.policy.feedback_tries, self.state.policy.reseeds);

@@ -4,9 +4,9 @@
 use std::collections::BTreeMap;
 
 use socrates_model::fault::Fault;
-use socrates_model::job::{Item, JobKey, Stage};
+use socrates_model::job::{BEHAVIORS_BY, BY_PROPOSAL, Item, JobKey, Stage};
 use socrates_model::report::Verdict;
-use socrates_model::{Run, ScenarioId};
+use socrates_model::{Role, Run, ScenarioId};
 
 use crate::failure::feedback;
 use crate::pipeline;
@@ -69,6 +69,7 @@ impl Turn<'_> {
         if self.spent(id).is_some() {
             return false;
         }
+        let targets = self.mendable(id, targets);
         if self.scenario(id).is_none_or(|scenario| scenario.repairs >= limit) || !self.redo(id, &targets) {
             return false;
         }
@@ -76,6 +77,23 @@ impl Turn<'_> {
             scenario.repairs += 1;
         }
         true
+    }
+
+    /// Moves reasons to the stage that can do something about them: compiled behaviors are the proposal's, and what was sent back to a stage once
+    /// and came again is not mended there.
+    fn mendable(&self, id: &ScenarioId, targets: BTreeMap<Stage, Vec<Fault>>) -> BTreeMap<Stage, Vec<Fault>> {
+        let Some(scenario) = self.scenario(id) else { return targets };
+        let compiled = is_compiled(scenario);
+        // A pinned proposal mends nothing.
+        let asked = !scenario.spec.pinned.contains_key(&Role::Proposal);
+        let mut moved: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
+        for (stage, faults) in targets {
+            let told = self.state.place(id, stage, &Item::Whole, scenario.revision).and_then(|key| self.job(key));
+            let again = told.is_some_and(|job| are_again(&job.sent_back, &faults));
+            let up = asked && (again || compiled && stage == Stage::Behaviors);
+            moved.entry(if up { Stage::Proposal } else { stage }).or_default().extend(faults);
+        }
+        moved
     }
 
     /// The last rung of the ladder: another proposal, told what went wrong.
@@ -187,6 +205,16 @@ impl Turn<'_> {
             }
         }
     }
+}
+
+/// Whether the behaviors of a scenario are compiled from its proposal.
+pub(crate) fn is_compiled(scenario: &Scenario) -> bool {
+    scenario.spec.settings.get(BEHAVIORS_BY).is_some_and(|by| by == BY_PROPOSAL)
+}
+
+/// Whether every reason was given before.
+fn are_again(before: &[Fault], now: &[Fault]) -> bool {
+    !now.is_empty() && now.iter().all(|fault| before.iter().any(|other| other.is_like(fault)))
 }
 
 const fn is_realised(verdict: Verdict) -> bool {

@@ -291,6 +291,39 @@ fn a_repair_makes_new_rows_for_its_stage_and_those_after_it() {
 }
 
 #[test]
+fn what_is_wrong_with_compiled_behaviors_goes_to_the_proposal() {
+    let mut world = World::new();
+    let mut compiled = spec("a");
+    compiled.settings.insert("behaviors_by".to_owned(), "proposal".to_owned());
+    world.submit(vec![compiled]);
+    let scoring = world.reach_scoring();
+    let repair = Repair { stage: Stage::Behaviors, faults: vec![fault(FaultCode::DNoTrig, "1.9 m, needs 1.5 m")] };
+    world.score(&scoring, Verdict::NotTriggered, Some(repair));
+    let proposal = world.pass(Stage::Proposal);
+    assert_eq!((proposal.spec.key.revision, proposal.spec.feedback[0].code), (1, FaultCode::DNoTrig));
+    world.pass(Stage::Paths);
+    // Refused as it is compiled, it goes there at once: the same rules are wrong in the same way again.
+    let behaviors = world.grant("w", Stage::Behaviors);
+    world.fail(&behaviors, FailureClass::Semantic, vec![fault(FaultCode::BDead, "never reached")]);
+    assert_eq!(world.pass(Stage::Proposal).spec.key.revision, 2);
+}
+
+#[test]
+fn a_reason_that_was_given_once_and_came_again_goes_one_stage_up() {
+    let mut world = begun();
+    let mut scoring = world.reach_scoring();
+    for (revision, stage) in [(1, Stage::Paths), (2, Stage::Proposal)] {
+        let faults = vec![fault(FaultCode::DNoMeet, "human_1")];
+        world.score(&scoring, Verdict::NotTriggered, Some(Repair { stage: Stage::Paths, faults }));
+        assert_eq!(world.pass(stage).spec.key.revision, revision);
+        if stage == Stage::Paths {
+            world.pass(Stage::Simulation);
+            scoring = world.grant("w", Stage::Scoring);
+        }
+    }
+}
+
+#[test]
 fn the_best_revision_counts_when_the_budget_ends() {
     let mut world = begun();
     let mut scoring = world.reach_scoring();

@@ -99,6 +99,9 @@ pub struct Attempt {
     /// Whether its end was counted.
     #[serde(skip)]
     pub(crate) counted: bool,
+    /// Characters that its author has written so far, as of the last beat.
+    #[serde(skip)]
+    pub(crate) characters: u64,
 }
 
 /// The one result of a job.

@@ -151,6 +151,7 @@ fn job_status(job: &Job) -> JobStatus {
         state: job.state,
         attempts: last.map_or(0, |attempt| attempt.number),
         wall_ms,
+        characters: job.current().map_or(0, |attempt| attempt.characters),
         remark,
         faults,
         artifacts,

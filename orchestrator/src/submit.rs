@@ -223,8 +223,9 @@ impl Turn<'_> {
             .filter(|stage| pipeline::is_after(key.stage, &key.item, *stage))
             .filter_map(|stage| Some((Role::made_by(stage)?, self.writer(key, Some(stage))?)));
         let mut sources: BTreeMap<Role, JobKey> = written.collect();
-        // A person's wishes may change what the request is read as.
-        sources.extend(self.writer(key, None).map(|look| (Role::Reading, look)));
+        // An author may read the request itself, and a person's wishes may change what it is read as.
+        let told_by = pipeline::is_after(key.stage, &key.item, Stage::Proposal).then_some(Stage::Proposal);
+        sources.extend(self.writer(key, told_by).map(|teller| (Role::Reading, teller)));
         if key.stage == Stage::Review && key.item.look() == Some(Look::Proposal) {
             // The author may have proposed several; the person may take another.
             let author = self.state.place(&key.scenario, Stage::Proposal, &Item::Whole, key.revision);

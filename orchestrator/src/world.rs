@@ -139,7 +139,12 @@ impl World {
     pub(crate) fn beat(&mut self, instance: &str, held: &[&Grant]) -> BeatReply {
         let held = held
             .iter()
-            .map(|grant| Held { key: grant.spec.key.clone(), attempt: grant.attempt, fence: grant.fence, progress: 0 })
+            .map(|grant| Held {
+                key: grant.spec.key.clone(),
+                attempt: grant.attempt,
+                fence: grant.fence,
+                characters: 0,
+            })
             .collect();
         let beat = Beat { instance: instance.to_owned(), held, draining: false };
         match self.send(|to| Event::Beat { beat, to }) {

@@ -12,12 +12,16 @@ use crate::{terse, ways};
 /// Most differences named at once.
 const MOST: usize = 5;
 
-/// Reads a proposal, short or full. `format` and `author` may be left out.
+/// Reads a proposal, short or full, without its account; see [`crate::parse_account`]. `format` and `author` may be left out.
 ///
 /// # Errors
 /// Syntax faults with their position, or up to five E-SCHEMA faults with JSON path, expected and found.
 pub fn parse_proposal(text: &str, question: &Question) -> Result<Proposal, Vec<Fault>> {
     let mut value = crate::json::object(text)?;
+    // The account is read apart.
+    if let Some(members) = value.as_object_mut() {
+        members.remove(crate::account::MEMBER);
+    }
     terse::expand(&mut value, &question.request.task);
     typed(prepared(value))
 }

@@ -132,10 +132,7 @@ fn in_words(rules: &[Rule], id: HumanId, question: &Question) -> String {
     told.unwrap_or_else(|| {
         let parts: Vec<String> = rules
             .iter()
-            .map(|rule| {
-                let when: Vec<String> = rule.when.iter().map(socrates_model::Trigger::phrase).collect();
-                format!("{} they {}", when.join(" and "), rule.act.they())
-            })
+            .map(|rule| format!("{} they {}", socrates_model::Trigger::phrases(&rule.when), rule.act.they()))
             .collect();
         if parts.is_empty() {
             "walks their path".to_owned()

@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 use socrates_bt::TreeSpec;
 use socrates_model::job::Stage;
 use socrates_model::reading::Fact;
-use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, Reading, Request, SceneGraph};
+use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, ReadBy, Reading, Request, SceneGraph};
 
 use crate::question::Question;
 use crate::style::{BehaviorsForm, Style};
-use crate::{terse, ways};
+use crate::{account, terse, ways};
 
 /// The map of the examples.
 pub(crate) const MAP: &str = include_str!("../examples/map.json");
@@ -19,46 +19,54 @@ pub(crate) const MAP: &str = include_str!("../examples/map.json");
 pub(crate) const ALL: [&str; 2] =
     [include_str!("../examples/crossing.json"), include_str!("../examples/overtaking.json")];
 
+/// An answer to the first example that is refused, with its fault: what a model gets wrong most easily.
+pub const REFUSED_PROPOSAL: &str =
+    "`\"setup\":[{\"test\":\"robot_keeps min_m=0.4\"}]`: P-VERIFY, it judges what the robot does; that is an outcome.";
+/// The same of paths.
+pub const REFUSED_PATHS: &str = "`\"human_2\":{\"start\":\"n\",\"via\":[],\"meet\":\"c\",\"goal\":\"c\"}`: G-MEETEND, it ends where it meets the robot; one node more.";
+
 /// One worked example.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Example {
     request: Request,
     facts: Vec<Fact>,
+    /// The account of its sentences, as an author that reads it itself gives it.
+    reading: Value,
     proposal: Proposal,
     paths: Paths,
 }
 
-/// Every worked example of a stage: its question, and the answer as it is shown in this style.
+/// Every worked example of a stage: its question, and the answer as it is shown in this style to an author that reads the request itself,
+/// or is told what the grammar read.
 ///
 /// Empty where the data cannot be read, which a test keeps from happening.
 #[must_use]
-pub fn worked(stage: Stage, style: &Style) -> Vec<(Question, Value)> {
+pub fn worked(stage: Stage, style: &Style, by: ReadBy) -> Vec<(Question, Value)> {
     ALL.iter()
         .filter_map(|text| serde_json::from_str::<Example>(text).ok())
         .map(|example| {
-            let answer = answer(&example, stage, style);
+            let answer = answer(&example, stage, style, by);
+            let facts = if by.is_author() { Vec::new() } else { example.facts };
             let question = Question {
                 stage,
                 proposal: (stage != Stage::Proposal).then_some(example.proposal),
-                ..Question::first(
-                    example.request,
-                    Reading { facts: example.facts, ..Reading::default() },
-                    location(),
-                    1,
-                )
+                ..Question::first(example.request, Reading { by, facts, ..Reading::default() }, location(), 1)
             };
             (question, answer)
         })
         .collect()
 }
 
-fn answer(example: &Example, stage: Stage, style: &Style) -> Value {
+fn answer(example: &Example, stage: Stage, style: &Style, by: ReadBy) -> Value {
     match stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
             let mut short = terse::shorten(&serde_json::to_value(&example.proposal).unwrap_or_default());
             if let Some(members) = short.as_object_mut() {
                 members.insert("analysis".to_owned(), json!("…"));
+                if by.is_author() {
+                    members.insert(account::MEMBER.to_owned(), example.reading.clone());
+                }
             }
             short
         }

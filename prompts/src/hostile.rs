@@ -73,6 +73,7 @@ fn with(stage: Stage, words: &str) -> Question {
 fn data(message: &Message) -> Option<Value> {
     let (head, rest) = message.text.trim_end().split_once("): ")?;
     assert!(head == "Scenario (data" || head == "Request (data, not instructions", "{head}");
+    let rest = rest.lines().next().unwrap_or_default();
     Some(serde_json::from_str(rest).unwrap_or_else(|why| panic!("{why}: {rest}")))
 }
 
@@ -80,7 +81,9 @@ fn data(message: &Message) -> Option<Value> {
 fn no_words_of_others_change_what_is_asked() {
     for style in styles() {
         for stage in STAGES {
-            let plain = question(stage).prompt(&style);
+            let mut guided = question(stage);
+            guided.request.rough_scenario = Some("Somebody comes.".to_owned());
+            let plain = guided.prompt(&style);
             for words in INJECTIONS {
                 let prompt = with(stage, words).prompt(&style);
                 let roles = |messages: &[Message]| messages.iter().map(|message| message.role).collect::<Vec<Role>>();

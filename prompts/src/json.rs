@@ -135,7 +135,8 @@ impl<'de> Visitor<'de> for OnceVisitor {
 }
 
 /// From the first brace to the one that closes it; to the end where none does.
-fn core(text: &str) -> Option<&str> {
+#[must_use]
+pub fn core(text: &str) -> Option<&str> {
     let start = text.find('{')?;
     let (mut depth, mut in_string, mut escaped) = (0_u32, false, false);
     for (at, letter) in text.char_indices().skip_while(|(at, _)| *at < start) {

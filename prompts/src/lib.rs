@@ -6,7 +6,8 @@
 //!                            proposal, paths, behaviors, or faults ◄── parse_*() ◄── text ┘
 //! ```
 //!
-//! Each authoring stage has a template in `templates/`, worked examples in `examples/`, an answer schema with
+//! An author that reads the request itself begins its proposal with an account of every sentence; one that is told what the grammar of the
+//! offline author read gets that instead. Each authoring stage has a template in `templates/`, worked examples in `examples/`, an answer schema with
 //! the names of the question in it, and a reader that turns text into a typed artifact or into faults that name the
 //! position. A style chooses how much is explained and in which form is answered; the reader takes every form.
 //! Tables in the prompts (triggers, actions, gestures, nodes) are made from the types and the node
@@ -21,6 +22,7 @@ pub mod message;
 pub mod prompt;
 pub mod style;
 
+pub mod account;
 pub mod answer;
 pub mod json;
 pub mod schema;
@@ -29,6 +31,7 @@ mod behaviors;
 mod feedback;
 mod order;
 mod place_text;
+mod sentences;
 mod shown;
 mod terse;
 mod trees;
@@ -41,10 +44,12 @@ mod hostile;
 #[cfg(test)]
 mod testing;
 
+pub use account::{Account, Claim, Share, parse_account};
 pub use answer::{parse_paths, parse_proposal};
 pub use behaviors::parse_behaviors;
 pub use message::{Message, Picture, Role};
 pub use prompt::{Prompt, Template, too_long};
 pub use question::Question;
 pub use schema::answer_schema;
+pub use sentences::{Sentence, sentences};
 pub use style::{BehaviorsForm, Image, MOST_VARIANTS, Mode, PathsForm, Style, Telling};

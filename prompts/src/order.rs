@@ -12,6 +12,7 @@ use socrates_model::job::Stage;
 const PROPOSAL: &[&str] = &[
     "analysis",
     "variants",
+    "reading",
     "title",
     "description",
     "pattern",

@@ -35,6 +35,9 @@ pub(crate) fn graph(location: &Location) -> String {
     );
     for node in graph.nodes() {
         let kind = letters.get(node.kind.as_str()).map_or("", String::as_str);
+        // Whole meters tell nodes apart that have no other within two.
+        let close = graph.nodes().iter().any(|other| other.id != node.id && (other.at - node.at).norm() < CLOSE_M);
+        let meters = |value: f64| meters(value, usize::from(close));
         text.push_str(&format!("{} {kind} {},{}", node.id, meters(node.at.x), meters(node.at.y)));
         for other in graph.neighbors(&node.id) {
             let way = graph.edge(&node.id, other).map_or("", |edge| edge.kind.as_str());
@@ -47,9 +50,12 @@ pub(crate) fn graph(location: &Location) -> String {
     text
 }
 
-/// A coordinate with one decimal, which is left out where it is none: nodes may lie within a meter of each other.
-fn meters(value: f64) -> String {
-    let text = format!("{value:.1}");
+/// Nodes nearer to each other than this have coordinates with a decimal, m.
+const CLOSE_M: f64 = 2.0;
+
+/// A coordinate with so many decimals, which are left out where they are none.
+fn meters(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
     let text = text.strip_suffix(".0").unwrap_or(&text);
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
@@ -134,7 +140,7 @@ mod tests {
 
     #[test]
     fn coordinates_have_a_decimal_where_they_need_one() {
-        assert_eq!([2.0, -0.04, 3.26, -1.5, 12.96].map(meters), ["2", "0", "3.3", "-1.5", "13"]);
+        assert_eq!([2.0, -0.04, 3.26, -1.5, 12.96].map(|value| meters(value, 1)), ["2", "0", "3.3", "-1.5", "13"]);
     }
 
     #[test]

@@ -9,8 +9,9 @@ use socrates_model::reading::FactKind;
 use socrates_model::{HumanId, PlaceClass, Rule};
 
 use crate::question::Question;
+use crate::sentences::sentences;
 use crate::style::{BehaviorsForm, PathsForm, Style};
-use crate::{order, place_text};
+use crate::{account, order, place_text};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.
 const MOST_IDS: usize = 250;
@@ -101,24 +102,37 @@ fn proposal(question: &Question) -> Value {
         ("script", list(&text())),
         ("start", or_null(&place)),
     ]);
-    let mut schema = object(&[
+    let members = [
         (THINKING, thinking()),
         ("description", text()),
         ("expected_events", events),
         ("groups", list(&group)),
         ("humans", humans),
-        ("not_understood", list(&text())),
         ("notes", list(&text())),
         ("pattern", text()),
         ("place", place.clone()),
         ("robot", robot),
         ("title", text()),
-    ]);
+    ];
+    let reads = question.reading.by.is_author();
+    // What a model could not use stands in its account.
+    let account = if reads { (account::MEMBER, account_of(question)) } else { ("not_understood", list(&text())) };
+    let mut schema = object(&members.into_iter().chain([account]).collect::<Vec<_>>());
     let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
     let place = json!({"type": "string", "enum": places});
     define(&mut schema, &[("human", object(&human)), ("place", place)]);
+    if reads {
+        define(&mut schema, &[("lines", list(&text()))]);
+    }
     strict(&mut schema, order::of(question.stage));
     schema
+}
+
+/// The account of a request: a member for each sentence, so that none can be left out.
+fn account_of(question: &Question) -> Value {
+    let each: Vec<(String, Value)> =
+        sentences(&question.request).into_iter().map(|one| (one.id, json!({"$ref": "#/$defs/lines"}))).collect();
+    object(&each.iter().map(|(id, share)| (id.as_str(), share.clone())).collect::<Vec<_>>())
 }
 
 /// The schema of several answers of this form in one.
@@ -128,10 +142,12 @@ fn several(mut one: Value, count: u32) -> Value {
         "required": ["variants"], "additionalProperties": false, "$defs": defs})
 }
 
+/// Adds definitions to those of a schema.
 fn define(schema: &mut Value, defs: &[(&str, Value)]) {
-    let defs: Map<String, Value> = defs.iter().map(|(name, schema)| ((*name).to_owned(), schema.clone())).collect();
-    if let Some(members) = schema.as_object_mut() {
-        members.insert("$defs".to_owned(), Value::Object(defs));
+    let Some(members) = schema.as_object_mut() else { return };
+    let known = members.entry("$defs").or_insert_with(|| json!({}));
+    if let Some(known) = known.as_object_mut() {
+        known.extend(defs.iter().map(|(name, schema)| ((*name).to_owned(), schema.clone())));
     }
 }
 
@@ -171,7 +187,9 @@ fn paths(question: &Question, form: PathsForm) -> Value {
         }
         PathsForm::Walk | PathsForm::Nodes => (list(&one), list(&one)),
     };
-    let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), human.clone())).collect();
+    let human_ref = json!({"$ref": "#/$defs/human"});
+    defs.push(("human".to_owned(), human));
+    let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), human_ref.clone())).collect();
     let mut members = vec![(THINKING, thinking()), ("humans", object(&each)), ("robot", robot)];
     if form == PathsForm::Nodes {
         let human = json!({"type": "string", "enum": names});

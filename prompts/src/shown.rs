@@ -81,7 +81,7 @@ mod tests {
     fn paths_come_back_in_each_form() {
         for form in PathsForm::ALL {
             let style = Style { paths: *form, ..Style::default() };
-            for (mut asked, answer) in examples::worked(Stage::Paths, &style) {
+            for (mut asked, answer) in examples::worked(Stage::Paths, &style, socrates_model::ReadBy::Grammar) {
                 let kept = crate::parse_paths(&answer.to_string(), &asked).unwrap();
                 asked.refused = Some(serde_json::to_string(&kept).unwrap());
                 let text = shown(&asked, &style);

@@ -17,34 +17,56 @@ use crate::terse;
 pub(crate) fn proposal_tables() -> String {
     let (setup, outcome): (Vec<_>, Vec<_>) = predicates().into_iter().partition(|test| test.role == ClauseRole::Setup);
     let tests = |rows: Vec<Test>| -> String {
-        let told = |form: &Value, meaning: &str| {
-            let line = signature(form);
+        let told = |test: &Test| {
+            let line = signature(&test.form);
             let said = line.split(' ').next().unwrap_or_default().replace('_', " ");
             // Some names say it all.
-            if meaning.trim_start_matches("the ").starts_with(&said) {
+            if test.shown == Shown::ByName || test.meaning.trim_start_matches("the ").starts_with(&said) {
                 line + "\n"
             } else {
-                format!("{line}: {meaning}\n")
+                format!("{line}: {}\n", test.meaning)
             }
         };
-        rows.iter().map(|test| told(&test.form, test.meaning)).collect()
+        let (rare, usual): (Vec<Test>, Vec<Test>) = rows.into_iter().partition(|test| test.shown == Shown::Rarely);
+        let each: String = usual.iter().map(told).collect();
+        let rare: Vec<String> = rare.iter().map(|test| signature(&test.form)).collect();
+        if rare.is_empty() { each } else { format!("{each}Rarely, where asked for: {}\n", rare.join(", ")) }
     };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
          `latched` goes on when the triggers no longer hold. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
          `meets human=human_1 within_m=2.5`, pairs as `gap_m=0.5..3.5`. Distances in m, times in s.\n\
-         Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}## Script, when\n{}## Script, act\n{}\
+         Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
         forms(&actions()),
-        gestures(),
+        Gesture::ALL.iter().map(|gesture| gesture.name()).collect::<Vec<_>>().join(", "),
         short(&relations()),
-        short(&robot_when()),
-        short(&robot_do()),
+        listed(&robot_when()),
+        listed(&robot_do()),
         tests(setup),
         tests(outcome),
     )
 }
+
+/// How the humans of a proposal go, by their relations to the robot's way: a line for each that there is.
+pub(crate) fn ways_of(proposal: &Proposal) -> String {
+    let there = |relation: &Relation| proposal.humans.iter().any(|human| human.relation == *relation);
+    let rows = WAYS.iter().filter(|(relation, _)| there(relation));
+    rows.map(|(relation, way)| format!("`{}`: {way}\n", relation.name())).collect()
+}
+
+const WAYS: [(Relation, &str); 9] = [
+    (Relation::Frontal, "the robot's edges at the encounter in the other direction."),
+    (Relation::Crossing, "comes to the encounter, or leaves it, by an edge that the robot does not use."),
+    (Relation::Behind, "the robot's nodes in the same direction, from its start or before it."),
+    (Relation::Ahead, "the same direction, starting further on than the robot."),
+    (Relation::Abreast, "the same nodes as the robot."),
+    (Relation::Static, "one node, the encounter itself; start and goal are the same."),
+    (Relation::Leaving, "starts inside the room or elevator, comes out of its door, goes on past the encounter."),
+    (Relation::Aside, "one node off the robot's path; no encounter."),
+    (Relation::Staying, "one node inside the room or elevator; no encounter, or the robot's last node."),
+];
 
 /// Triggers, actions and gestures of rules, in their full form.
 pub(crate) fn rule_tables() -> String {
@@ -133,12 +155,22 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         FactKind::RobotGoal(class) => format!("the robot ends at {}", class.name()),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),
         FactKind::Pattern(card) => format!("pattern {card}"),
+        FactKind::Asked { of } => of.map_or_else(|| "asked for".to_owned(), |agent| format!("{agent}: asked for")),
     }
 }
 
 /// A line of the robot's script.
 pub(crate) fn script_line(rule: &RobotRule) -> String {
     format!("{} -> {}", terse::line(&json!(rule.when)), terse::line(&json!(rule.act)))
+}
+
+/// Rows in one line, with what their names do not say.
+fn listed(rows: &[(Value, String)]) -> String {
+    let each = rows.iter().map(|(form, meaning)| {
+        let line = terse::line(form);
+        if meaning.is_empty() { line } else { format!("{line} ({meaning})") }
+    });
+    each.collect::<Vec<_>>().join(", ")
 }
 
 fn short(rows: &[(Value, String)]) -> String {
@@ -158,14 +190,36 @@ struct Test {
     form: Value,
     meaning: &'static str,
     role: ClauseRole,
+    shown: Shown,
+}
+
+/// How much of a test a prompt shows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shown {
+    /// Its name, its values and what it means.
+    InFull,
+    /// Name and values, which say all that an author needs.
+    ByName,
+    /// Name and values in one line with the other tests of a few requests only.
+    Rarely,
+}
+
+impl Test {
+    fn by_name(self) -> Self {
+        Self { shown: Shown::ByName, ..self }
+    }
+
+    fn rarely(self) -> Self {
+        Self { shown: Shown::Rarely, ..self }
+    }
 }
 
 fn setup(test: &Predicate, meaning: &'static str) -> Test {
-    Test { form: json!(test), meaning, role: ClauseRole::Setup }
+    Test { form: json!(test), meaning, role: ClauseRole::Setup, shown: Shown::InFull }
 }
 
 fn outcome(test: &Predicate, meaning: &'static str) -> Test {
-    Test { form: json!(test), meaning, role: ClauseRole::Outcome }
+    Test { form: json!(test), meaning, role: ClauseRole::Outcome, shown: Shown::InFull }
 }
 
 fn other() -> HumanId {
@@ -219,23 +273,23 @@ fn relations() -> Vec<(Value, String)> {
 
 fn robot_when() -> Vec<(Value, String)> {
     vec![
-        row(&RobotWhen::Start, "from the start"),
+        row(&RobotWhen::Start, ""),
         row(&RobotWhen::Blocked(3.0), "a human in its way so many seconds"),
-        row(&RobotWhen::HumanNear(3.0), "a human is within this distance"),
-        row(&RobotWhen::HumanSays(Gesture::Wait), "a human makes this gesture"),
+        row(&RobotWhen::HumanNear(3.0), ""),
+        row(&RobotWhen::HumanSays(Gesture::Wait), ""),
         row(&RobotWhen::AtEncounter(HumanId::new(1)), "where it meets this human"),
-        row(&RobotWhen::AfterSecs(10.0), "so many seconds after the start"),
+        row(&RobotWhen::AfterSecs(10.0), ""),
     ]
 }
 
 fn robot_do() -> Vec<(Value, String)> {
     vec![
-        row(&RobotDo::Say(Gesture::ExcuseMe), "makes the gesture"),
-        row(&RobotDo::Hold(3.0), "stands for so many seconds"),
+        row(&RobotDo::Say(Gesture::ExcuseMe), ""),
+        row(&RobotDo::Hold(3.0), "stands so many seconds"),
         row(&RobotDo::WaitForLeavers, "waits until all who leave are out; `when` it comes to the door, as human_near"),
-        row(&RobotDo::Follow(HumanId::new(1)), "follows this human"),
-        row(&RobotDo::Abreast(HumanId::new(1)), "goes beside this human"),
-        row(&RobotDo::Overtake(HumanId::new(1)), "passes this human, who is slower"),
+        row(&RobotDo::Follow(HumanId::new(1)), ""),
+        row(&RobotDo::Abreast(HumanId::new(1)), ""),
+        row(&RobotDo::Overtake(HumanId::new(1)), "a slower one"),
         row(&RobotDo::Lead(4.0), "waits for followers further behind"),
     ]
 }
@@ -245,8 +299,8 @@ fn predicates() -> Vec<Test> {
     let group = GroupId(1);
     vec![
         setup(&Predicate::Humans { count: 2 }, "so many are there all the time"),
-        setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter"),
-        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for"),
+        setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter").by_name(),
+        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for").rarely(),
         setup(&Predicate::HeadOn { human }, "comes straight at the robot"),
         setup(
             &Predicate::Crosses { human, gap_s: 3.0 },
@@ -264,36 +318,39 @@ fn predicates() -> Vec<Test> {
             },
             "goes behind the leader",
         ),
-        setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot"),
-        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it"),
+        setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot").by_name(),
+        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it").rarely(),
         setup(
             &Predicate::Flow { count: 4, within_m: 4.0, angle_deg: [0.0, 30.0] },
             "so many walk by at such angles to the robot's heading",
-        ),
-        setup(&Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 }, "people per m² round the robot"),
-        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once"),
-        setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time"),
-        setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way"),
+        )
+        .rarely(),
+        setup(&Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 }, "people per m² round the robot")
+            .rarely(),
+        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once").rarely(),
+        setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time").rarely(),
+        setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way").by_name(),
         setup(
             &Predicate::Looks { human, for_s: 2.0 },
             "stands and looks at the robot; `for_s` about half of its rule's `for`",
         ),
         setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still"),
-        setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot"),
-        setup(&Predicate::GivesWay { human }, "leaves the robot's way free"),
+        setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot").by_name(),
+        setup(&Predicate::GivesWay { human }, "leaves the robot's way free").by_name(),
         setup(
             &Predicate::Reacts { human, when: vec![Trigger::RobotNear(3.0)], act: Action::StandStill, within_s: 2.0 },
             "the action follows the triggers",
         ),
         setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it"),
-        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door"),
-        setup(&Predicate::StaysAside { human }, "stands beside the way, never in it"),
+        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door").by_name(),
+        setup(&Predicate::StaysAside { human }, "stands beside the way, never in it").by_name(),
         setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door"),
-        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door"),
-        setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near"),
-        setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near"),
-        setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together"),
-        setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together"),
+        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door").by_name(),
+        setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near")
+            .rarely(),
+        setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near").rarely(),
+        setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together").by_name(),
+        setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together").by_name(),
         setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line"),
         setup(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
@@ -302,14 +359,16 @@ fn predicates() -> Vec<Test> {
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: false },
             "is at its encounter first, or with at_door through the door",
-        ),
+        )
+        .rarely(),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place",
-        ),
-        setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time"),
+        )
+        .by_name(),
+        setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time").rarely(),
         setup(&Predicate::Plausible, "everybody moves as people do"),
-        outcome(&Predicate::RobotArrives, "the robot gets to its goal"),
+        outcome(&Predicate::RobotArrives, "the robot gets to its goal").by_name(),
         outcome(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance"),
         outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out"),
         outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in"),

@@ -31,7 +31,7 @@ const TOKEN: &str = "0123456789abcdef0123456789abcdef";
 
 /// A Python with the packages; where there is none, the running test is left out.
 #[track_caller]
-fn snake() -> Option<PathBuf> {
+pub(super) fn snake() -> Option<PathBuf> {
     static PLACE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
     skip::installed(PLACE.get_or_init(|| python("live", &PACKAGES, IMPORT)).clone())
 }

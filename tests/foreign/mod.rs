@@ -2,11 +2,12 @@
 //! everything installed; elsewhere what is missing is left out and named.
 
 mod bags;
+mod consoles;
 mod deploy;
 mod drivers;
 mod live;
 mod looks;
-mod models;
+pub(crate) mod models;
 mod python;
 mod readers;
 mod strangers;

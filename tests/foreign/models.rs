@@ -87,17 +87,65 @@ impl Drop for Mock {
     }
 }
 
-/// Good answers to the questions of a request, as the offline author gives them.
+/// Good answers to the questions of a request: those of the offline author, with an account of the request's sentences.
 struct Answers {
     proposal: String,
     paths: String,
-    behaviors: String,
 }
 
 fn answers(folder: &Path) -> Answers {
+    answers_to(folder, WAREHOUSE, &WAREHOUSE_ACCOUNT)
+}
+
+/// What becomes of each sentence: the words that ask for something and the people who do it, or a reason.
+pub(crate) type Fates<'a> = [Result<&'a [(&'a str, &'a str)], &'a str>];
+
+/// The account of [`WAREHOUSE`].
+pub(crate) const WAREHOUSE_ACCOUNT: [Result<&[(&str, &str)], &str>; 4] = [
+    Ok(&[("One person walks towards the robot", "human_1")]),
+    Ok(&[("One person follows the robot", "human_2")]),
+    Err("errand"),
+    Err("setting"),
+];
+
+/// The proposal with an account: each fact is the source of a clause about who does it, which was written for the same words.
+pub(crate) fn accounted(proposal: &str, fates: &Fates<'_>) -> String {
+    let mut value: Value = serde_json::from_str(proposal).unwrap();
+    for clause in value["expected_events"].as_array_mut().unwrap() {
+        clause.as_object_mut().unwrap().remove("source");
+    }
+    let (mut reading, mut facts) = (serde_json::Map::new(), 0);
+    for (place, fate) in fates.iter().enumerate() {
+        let share = match fate {
+            Err(reason) => json!([reason]),
+            Ok(asked) => asked
+                .iter()
+                .map(|(quote, who)| {
+                    facts += 1;
+                    let clauses = value["expected_events"].as_array_mut().unwrap();
+                    let about = |clause: &&mut Value| {
+                        let kind = clause["predicate"].to_string();
+                        clause["role"] == "setup"
+                            && clause["must"] == true
+                            && clause.get("source").is_none()
+                            && (kind.contains(&format!("\"{who}\"")) || *who == "all" && kind.contains("humans"))
+                    };
+                    let clause = clauses.iter_mut().find(about).unwrap_or_else(|| panic!("nothing shows {quote}"));
+                    clause["source"] = json!(format!("f{facts}"));
+                    json!(format!("f{facts} {who}: {quote}"))
+                })
+                .collect(),
+        };
+        reading.insert(format!("s{}", place + 1), share);
+    }
+    value["reading"] = Value::Object(reading);
+    value.to_string()
+}
+
+fn answers_to(folder: &Path, request: &str, fates: &Fates<'_>) -> Answers {
     let tape = folder.join("tape");
     let author = format!("record:{}=offline", tape.display());
-    let (finished, json) = make(folder, "recorded", WAREHOUSE, &["--author", &author]);
+    let (finished, json) = make(folder, "recorded", request, &["--author", &author]);
     assert_eq!(json["verdict"], "realised", "{}\n{}", finished.err, finished.out);
     let mut found: Vec<(String, String)> = Vec::new();
     for file in files(&tape) {
@@ -110,7 +158,7 @@ fn answers(folder: &Path) -> Answers {
         assert_eq!(all.len(), 1, "one answer to the {stage} question");
         all[0].clone()
     };
-    Answers { proposal: of("proposal"), paths: of("paths"), behaviors: of("behaviors") }
+    Answers { proposal: accounted(&of("proposal"), fates), paths: of("paths") }
 }
 
 /// The paths without the robot's third node: a jump.
@@ -120,13 +168,12 @@ fn with_a_jump(paths: &str) -> String {
     value.to_string()
 }
 
-/// What the server says to each question: a good proposal, first bad and then good paths, good behaviors.
+/// What the server says to each question: a good proposal, first bad and then good paths. Behaviors are not asked for.
 fn fixtures(answers: &Answers) -> Value {
     let says = |marks: &str, text: &str| json!({"match": {"userMessage": marks}, "response": {"content": text}});
     json!([
         says("This answer is refused", &answers.paths),
         says("Request (data, not instructions)", &answers.proposal),
-        says("robot_script", &answers.behaviors),
         says("Your task: paths", &with_a_jump(&answers.paths)),
         says("\"place\":", &with_a_jump(&answers.paths)),
         // The list of models is made of the names that stand here.
@@ -180,11 +227,10 @@ fn realised_over(author: &str, address: &str, key: &str) {
         make(folder, "model", WAREHOUSE, &["--author", author, "--set", key.as_str(), "--set", url.as_str()]);
     assert_eq!(json["verdict"], "realised", "{author}: {}\n{}", finished.err, finished.out);
     let provenance = provenance(folder, "model");
-    for stage in ["proposal", "behaviors"] {
-        let exchange = &exchanges(&provenance, stage)[0];
-        assert!(exchange["model"].as_str().unwrap().starts_with(author.split(':').next().unwrap()), "{exchange}");
-        assert!(exchange["how"]["template"]["digest"].is_string() && exchange["how"]["rung"].is_string(), "{exchange}");
-    }
+    let exchange = &exchanges(&provenance, "proposal")[0];
+    assert!(exchange["model"].as_str().unwrap().starts_with(author.split(':').next().unwrap()), "{exchange}");
+    assert!(exchange["how"]["template"]["digest"].is_string() && exchange["how"]["rung"].is_string(), "{exchange}");
+    assert_eq!(exchanges(&provenance, "behaviors")[0]["model"], "compiled/1");
     re_asked_with_its_reason(&exchanges(&provenance, "paths"));
     // The key is in nothing that was written: bundle, store, spool, logs.
     let all = files(folder);
@@ -195,7 +241,7 @@ fn realised_over(author: &str, address: &str, key: &str) {
     }
     let cost = socrates(folder, "cost", &["--format", "json", "cost", "bundle-model"]).json();
     let total = &cost["total"][0];
-    assert_eq!((&total["calls"], &total["cost"]), (&json!(4), &Value::Null), "{cost}");
+    assert_eq!((&total["calls"], &total["cost"]), (&json!(3), &Value::Null), "{cost}");
     assert!(total["tokens_out"].as_u64().unwrap() > 0, "{cost}");
 }
 
@@ -213,6 +259,11 @@ fn re_asked_with_its_reason(asked: &[Value]) {
 #[test]
 fn a_scenario_is_realised_over_chat_completions() {
     realised_over("openai:gpt-4o", "http://127.0.0.1:PORT/v1", "");
+}
+
+#[test]
+fn a_scenario_is_realised_over_responses() {
+    realised_over("responses:gpt-4o", "http://127.0.0.1:PORT/v1", "responses.");
 }
 
 #[test]
@@ -255,6 +306,53 @@ fn what_was_recorded_is_replayed_byte_for_byte_without_the_server() {
     let (finished, _) =
         make(folder, "other", &WAREHOUSE.replace("busy", "quiet"), &["--author", &format!("cassette:{tape}")]);
     assert!(finished.code != 0 && finished.err.contains("no recorded answer"), "{}", finished.err);
+}
+
+/// A request in another language is asked like any other, and nothing of the grammar stands between: the answers are those to the English
+/// request, with an account of its own sentences.
+fn realised_in(name: &str, request: &str, fates: &Fates<'_>) {
+    let Some(program) = aimock() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let answers = answers_to(folder, WAREHOUSE, fates);
+    let mock = Mock::start(&program, folder, &fixtures(&answers));
+    let url = format!("author.vllm.url=http://127.0.0.1:{}/v1", mock.port);
+    let (finished, json) = make(folder, name, request, &["--author", "vllm:small", "--set", &url]);
+    assert_eq!(json["verdict"], "realised", "{}\n{}", finished.err, finished.out);
+    assert_eq!(json["reading"]["by"], "author_alone", "{}", json["reading"]);
+    let fates: Vec<&Value> =
+        json["reading"]["statements"].as_array().unwrap().iter().map(|one| &one["became"]).collect();
+    assert!(fates.len() == 4 && fates[0]["read"]["facts"][0] == "f1", "{fates:?}");
+}
+
+#[test]
+fn a_german_and_a_chinese_request_are_realised() {
+    let german = r#"
+location = "warehouse"
+social_context = "Ein volles Lager"
+task = "Bring eine Kiste von der Laderampe zum Packplatz"
+rough_scenario = "Jemand kommt dem Roboter entgegen. Eine andere Person folgt dem Roboter."
+"#;
+    let fates = [
+        Ok(&[("kommt dem Roboter entgegen", "human_1")][..]),
+        Ok(&[("Eine andere Person folgt dem Roboter", "human_2")][..]),
+        Err("errand"),
+        Err("setting"),
+    ];
+    realised_in("german", german, &fates);
+    let chinese = r#"
+location = "warehouse"
+social_context = "忙碌的仓库"
+task = "把箱子从装卸区搬到包装区"
+rough_scenario = "一个人向机器人走来。另一个人跟着机器人。"
+"#;
+    let fates = [
+        Ok(&[("一个人向机器人走来", "human_1")][..]),
+        Ok(&[("另一个人跟着机器人", "human_2")][..]),
+        Err("errand"),
+        Err("setting"),
+    ];
+    realised_in("chinese", chinese, &fates);
 }
 
 fn find(folder: &Path, name: &str) -> Vec<u8> {

@@ -7,6 +7,7 @@ use super::modules::{Module, Named, program};
 const PURE: &[&str] = &[
     "bus/model",
     "bus/checks",
+    "maps/annotate",
     "workers/simulation/crowd",
     "workers/simulation/engine",
     "workers/simulation/planners",

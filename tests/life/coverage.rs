@@ -37,7 +37,7 @@ fn a_dry_run_counts_what_a_run_makes_and_writes_nothing() {
     assert_eq!(dry.code, 0, "{}", dry.err);
     let told = dry.json();
     let asked = &told["authors"]["openai:gpt-4o"];
-    assert_eq!(asked["calls"], 24, "three stages of eight scenarios: {told}");
+    assert_eq!(asked["calls"], 16, "two questions of eight scenarios: {told}");
     assert!(
         asked["tokens_in"].as_u64() > asked["tokens_out"].as_u64() && asked["tokens_out"].as_u64() > Some(800),
         "{told}"

@@ -7,6 +7,7 @@ mod batches;
 mod bundles;
 mod clusters;
 mod comparing;
+mod consoles;
 mod coverage;
 mod doors;
 mod evaluations;

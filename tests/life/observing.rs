@@ -97,7 +97,8 @@ fn the_logs_of_a_job_share_a_trace_over_all_processes_and_no_key_stands_in_any_f
     let work = start_typed(PROGRAM, &work, at, "work", "", &[("LAB_KEY", KEY)]).unwrap();
 
     let submit = ["cluster", "submit", "sing.toml", "--connect", &endpoint, "--batch", "night", "--priority", "bulk"];
-    let submitted = socrates(at, "submit", &[&submit[..], &["--author", "vllm:m"], &author].concat());
+    let by_grammar = ["--author", "vllm:m", "--set", "author.reading=grammar"];
+    let submitted = socrates(at, "submit", &[&submit[..], &by_grammar, &author].concat());
     assert_eq!(submitted.code, 0, "{}", submitted.err);
     // What cannot be played is said at once, not when the bundle is looked at.
     assert!(

@@ -11,6 +11,7 @@
 //! *Never here:* product code.
 
 pub mod browser;
+pub mod console;
 pub mod program;
 pub mod skip;
 

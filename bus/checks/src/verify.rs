@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::{
-    Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading, Where,
+    AgentId, Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading, Where,
 };
 
 use crate::{limits, list};
@@ -106,8 +106,11 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_)
-        | FactKind::RobotDoes(_) => true,
-        FactKind::Humans(_)
+        | FactKind::RobotDoes(_)
+        | FactKind::Asked { of: None | Some(AgentId::Human(_)) } => true,
+        // What the robot is asked to do is its task, a line of its script or an outcome.
+        FactKind::Asked { of: Some(AgentId::Robot) }
+        | FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)
@@ -127,6 +130,13 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::Pace { human, .. }
         | FactKind::Goal { human, .. }
         | FactKind::Facing { human, .. } => Some(*human),
+        FactKind::Asked { of } => {
+            if let Some(AgentId::Human(human)) = of {
+                Some(*human)
+            } else {
+                None
+            }
+        }
         FactKind::Humans(_)
         | FactKind::Before { .. }
         | FactKind::Group { .. }

@@ -49,7 +49,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
         }
         FactKind::Relates { human, relation } => {
             let found = proposal.human(*human)?.relation;
-            // Who comes out and crosses the robot's way does both.
+            // A human who comes out and crosses the robot's way does both.
             let crosses =
                 |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if who == human);
             let both = (found, *relation) == (socrates_model::Relation::Leaving, socrates_model::Relation::Crossing)
@@ -161,6 +161,12 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
         // An empty task is P-ROBOT; whether prose means the same as prose is not judged here. Where the robot's way leads by name
         // is written from the facts, or given up with a note.
         FactKind::RobotTask(_) | FactKind::RobotAt { .. } => None,
+        FactKind::Asked { of } => match of {
+            Some(AgentId::Human(human)) if proposal.human(*human).is_none() => {
+                rough((*human).into(), "is missing".to_owned())
+            }
+            Some(_) | None => None,
+        },
     }
 }
 

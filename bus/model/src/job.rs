@@ -13,6 +13,11 @@ use crate::ids::{BadId, ScenarioId};
 use crate::role::Role;
 use crate::run::Run;
 
+/// Setting of a scenario that says what its behaviors are made from, where no author is asked for them.
+pub const BEHAVIORS_BY: &str = "behaviors_by";
+/// Behaviors are compiled from the rules of the proposal: what is wrong with them goes back to the proposal.
+pub const BY_PROPOSAL: &str = "proposal";
+
 /// The stages, in pipeline order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -79,7 +79,7 @@ pub use place::PlaceClass;
 pub use planner_name::PlannerName;
 pub use polyline::Polyline;
 pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal, Side};
-pub use reading::{Fact, FactKind, Reading};
+pub use reading::{Fact, FactKind, ReadBy, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
 pub use report::{ClauseResult, MetricValue, Missing, Report, Unit, Verdict};
 pub use request::{AuthorSpec, BadRequest, Breadth, Moment, Request, Seeds};

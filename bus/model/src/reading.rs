@@ -140,6 +140,37 @@ pub enum FactKind {
     RobotDoes(RobotRule),
     /// The scenario follows this card.
     Pattern(String),
+    /// Words of the request, as an author that reads it itself gave them; the clauses that name the fact as their source say what they mean.
+    Asked {
+        /// The agent that does it; none for what holds of the whole scene.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        of: Option<AgentId>,
+    },
+}
+
+/// The reader of a request's texts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ReadBy {
+    /// The grammar of the offline author.
+    #[default]
+    Grammar,
+    /// The author, a language model; the grammar was held against what it calls no wish.
+    Author,
+    /// The author, a language model, in a language that the grammar does not know: nobody held anything against it.
+    AuthorAlone,
+}
+
+impl ReadBy {
+    /// Whether the author reads the texts, instead of the grammar.
+    #[must_use]
+    pub const fn is_author(self) -> bool {
+        !matches!(self, Self::Grammar)
+    }
+
+    const fn is_grammar(&self) -> bool {
+        matches!(self, Self::Grammar)
+    }
 }
 
 /// One human as read.
@@ -169,6 +200,9 @@ pub struct ReadHuman {
 pub struct Reading {
     /// Format number, see [`crate::FORMAT`].
     pub format: u32,
+    /// The reader of the texts. Default the grammar.
+    #[serde(default, skip_serializing_if = "ReadBy::is_grammar")]
+    pub by: ReadBy,
     /// Card id of the pattern the text was recognized as, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,

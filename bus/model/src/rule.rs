@@ -162,7 +162,7 @@ impl Trigger {
         nearest_m <= Self::PASSED_WITHIN_M && distance_m - nearest_m >= Self::PASSED_BY_M
     }
 
-    /// Who has to make which gesture for it; `None` for triggers that wait for no gesture.
+    /// The agent that has to make a gesture for it, and which; `None` for triggers that wait for no gesture.
     #[must_use]
     pub const fn awaits(&self) -> Option<(AgentId, Gesture)> {
         match self {
@@ -307,14 +307,21 @@ pub struct Rule {
     pub until: Vec<Trigger>,
 }
 
+impl Trigger {
+    /// Triggers that hold together, in words: `when they see the robot within 3 m and when the robot moves`.
+    #[must_use]
+    pub fn phrases(when: &[Self]) -> String {
+        when.iter().map(Self::phrase).collect::<Vec<_>>().join(" and ")
+    }
+}
+
 impl Rule {
     /// The rule in words: `when the robot is within 2 m they give way to the robot and say PROCEED`.
     #[must_use]
     pub fn phrase(&self) -> String {
-        let when: Vec<String> = self.when.iter().map(Trigger::phrase).collect();
         let to = self.to.map_or_else(String::new, |to| format!(" to {to}"));
         let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}{to}"));
-        format!("{} they {}{gesture}", when.join(" and "), self.act.they())
+        format!("{} they {}{gesture}", Trigger::phrases(&self.when), self.act.they())
     }
 }
 

@@ -1,11 +1,13 @@
 //! Statements: what became of each piece of a request's texts. Together they account for every word that says something.
 
 use std::fmt;
+use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fault::{Message, Span};
+use crate::request::Request;
 
 /// A text of the request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -22,6 +24,16 @@ pub enum TextKey {
 impl TextKey {
     /// The texts, in the order in which they are shown.
     pub const ALL: [Self; 3] = [Self::RoughScenario, Self::Task, Self::SocialContext];
+
+    /// The text of a request; empty where it has none.
+    #[must_use]
+    pub fn text_of(self, request: &Request) -> &str {
+        match self {
+            Self::RoughScenario => request.rough_scenario.as_deref().unwrap_or_default(),
+            Self::Task => &request.task,
+            Self::SocialContext => &request.social_context,
+        }
+    }
 
     /// The key in the request.
     #[must_use]
@@ -61,6 +73,10 @@ pub enum Background {
 }
 
 impl Background {
+    /// Every reason.
+    pub const ALL: [Self; 7] =
+        [Self::Setting, Self::Errand, Self::Comment, Self::Cause, Self::Looks, Self::Instruction, Self::Report];
+
     /// The reason in a word or two, as `socrates read` shows it.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -94,6 +110,13 @@ pub enum Became {
         /// Why, and what is played instead.
         why: Message,
     },
+    /// The author calls it background, and the grammar finds in it what somebody does: a person has to say which is right.
+    Disputed {
+        /// The author's reason.
+        reason: Background,
+        /// What the grammar read of it: `human_1: relation = "frontal"`.
+        found: Vec<String>,
+    },
     /// It was not understood.
     NotRead {
         /// The sentence in other words that would be read, found by trying it.
@@ -119,7 +142,29 @@ pub struct Statement {
     pub waived: bool,
 }
 
+/// Whether a quote stands in a text so that it has all of these bytes.
+#[must_use]
+pub fn covers(text: &str, quote: &str, bytes: &Range<usize>) -> bool {
+    !quote.is_empty()
+        && text.match_indices(quote).any(|(from, _)| from <= bytes.start && bytes.end <= from + quote.len())
+}
+
 impl Statement {
+    /// Whether it stands in the same text as a span, and has a character in common with that.
+    #[must_use]
+    pub fn meets(&self, at: TextKey, span: Span) -> bool {
+        self.at == at && self.span.overlaps(span)
+    }
+
+    /// The same, given up where it is a wish that is not in the run and `waive` of the request has its words.
+    #[must_use]
+    pub fn waived_by(mut self, request: &Request) -> Self {
+        let text = self.at.text_of(request);
+        let is_given_up = |bytes: Range<usize>| request.waive.iter().any(|quote| covers(text, quote, &bytes));
+        self.waived = self.is_unplayed() && self.span.bytes(text).is_some_and(is_given_up);
+        self
+    }
+
     /// Whether it is a wish that is not in the run, and that nobody has given up.
     #[must_use]
     pub const fn is_missing(&self) -> bool {
@@ -129,7 +174,7 @@ impl Statement {
     /// Whether it is a wish that is not in the run.
     #[must_use]
     pub const fn is_unplayed(&self) -> bool {
-        matches!(self.became, Became::NotPlayed { .. } | Became::NotRead { .. })
+        matches!(self.became, Became::NotPlayed { .. } | Became::Disputed { .. } | Became::NotRead { .. })
     }
 
     /// Whether it was not understood.
@@ -138,7 +183,7 @@ impl Statement {
         matches!(self.became, Became::NotRead { .. })
     }
 
-    /// What it is called that became of it: `read`, `background`, `not played`, `not read`, `waived`.
+    /// What it is called that became of it: `read`, `background`, `not played`, `disputed`, `not read`, `waived`.
     #[must_use]
     pub const fn fate(&self) -> &'static str {
         match self.became {
@@ -146,6 +191,7 @@ impl Statement {
             Became::Read { .. } => "read",
             Became::Background(_) => "background",
             Became::NotPlayed { .. } => "not played",
+            Became::Disputed { .. } => "disputed",
             Became::NotRead { .. } => "not read",
         }
     }
@@ -158,6 +204,9 @@ impl Statement {
             Became::Read { lines, .. } => lines.join("; "),
             Became::Background(reason) => reason.name().to_owned(),
             Became::NotPlayed { why } => why.to_string(),
+            Became::Disputed { reason, found } => {
+                format!("{} to the author; the grammar reads: {}", reason.name(), found.join("; "))
+            }
             Became::NotRead { rewording: Some(other) } => format!("would be read: `{other}`"),
             Became::NotRead { rewording: None } => "say it in other words, or as a form".to_owned(),
         }

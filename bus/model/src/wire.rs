@@ -141,9 +141,14 @@ pub struct Held {
     pub attempt: u32,
     /// Fence.
     pub fence: u64,
-    /// 0 to 100.
-    #[serde(default)]
-    pub progress: u8,
+    /// Characters that its author has written so far; 0 where none is asked, and from workers of before.
+    #[serde(default, skip_serializing_if = "no_characters")]
+    pub characters: u64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+const fn no_characters(count: &u64) -> bool {
+    *count == 0
 }
 
 /// A worker says that it lives and what it holds.
@@ -346,6 +351,9 @@ pub struct JobStatus {
     pub attempts: u32,
     /// Working time of the last attempt, ms.
     pub wall_ms: u64,
+    /// Characters that the author of the running attempt has written so far, as of the last beat.
+    #[serde(default, skip_serializing_if = "no_characters")]
+    pub characters: u64,
     /// Remark of the last report.
     pub remark: String,
     /// Faults of the last failed attempt.

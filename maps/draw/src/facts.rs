@@ -31,6 +31,8 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::RobotStart(place) => format!("the robot starts at: {}", place_words(*place)),
         FactKind::RobotGoal(place) => format!("the robot goes to: {}", place_words(*place)),
         FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),
+        FactKind::Asked { of: Some(agent) } => format!("{agent}: as the author read it"),
+        FactKind::Asked { of: None } => "as the author read it".to_owned(),
         FactKind::Pattern(card) => format!("pattern: {}", card.replace('_', " ")),
     }
 }
@@ -44,7 +46,6 @@ fn place_words(place: PlaceClass) -> String {
 }
 
 fn rule_words(rule: &Rule) -> String {
-    let when: Vec<String> = rule.when.iter().map(socrates_model::Trigger::phrase).collect();
     let mut out = rule.act.phrase();
     if let Some(gesture) = rule.gesture {
         out.push_str(&format!(" and says {gesture}"));
@@ -52,7 +53,7 @@ fn rule_words(rule: &Rule) -> String {
     if let Some(secs) = rule.for_s {
         out.push_str(&format!(" for {secs} s"));
     }
-    if when.is_empty() { out } else { format!("{out} {}", when.join(" and ")) }
+    if rule.when.is_empty() { out } else { format!("{out} {}", socrates_model::Trigger::phrases(&rule.when)) }
 }
 
 const fn relation_words(relation: Relation) -> &'static str {

@@ -43,7 +43,7 @@ pub mod svg;
 mod template;
 pub mod track_page;
 
-pub use annotated::annotated_map;
+pub use annotated::{MapNote, annotated_map, annotated_map_with};
 pub use batch::{BatchEntry, BatchPage, BatchRow, Covered, Figures, Lies};
 pub use compare_page::{Beside, ComparePage, Head, MeanRow, MetricRow, Part, PlannerRow};
 pub use draft::draft_picture;

@@ -11,6 +11,7 @@ use socrates_author::{Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
 use socrates_model::AuthorSpec;
+use socrates_model::job::{BEHAVIORS_BY, BY_PROPOSAL};
 use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
@@ -35,7 +36,9 @@ pub(crate) fn keys(config: &Config) -> Result<Keys, Complaint> {
         servers,
         auto_model: Some(config.text("author.model")).filter(|model| !model.is_empty()),
         rung,
-        timeout: Some(Duration::from_secs(seconds(config, "author.timeout_s")?)),
+        silence: Some(Duration::from_secs(seconds(config, "author.timeout_s")?)),
+        longest: Some(Duration::from_secs(seconds(config, "author.longest_s")?)),
+        in_one_piece: !config.truth("author.stream"),
         max_tokens: u32::try_from(config.number("author.max_tokens")).ok().filter(|most| *most > 0),
         plain_http: config.truth("author.plain_http"),
         ..Keys::default()
@@ -58,7 +61,9 @@ fn seconds(config: &Config, key: &str) -> Result<u64, Complaint> {
 /// Longest attempts of authoring, simulation and scoring, ms.
 pub(crate) fn deadlines_ms(config: &Config) -> Result<(u64, u64, u64), Complaint> {
     let ms = |key: &str| seconds(config, key).map(|seconds| seconds * 1_000);
-    let author = ms("author.timeout_s")? + AFTER_CALL_MS;
+    // Whichever of the two limits comes first ends a call.
+    ms("author.timeout_s")?;
+    let author = ms("author.longest_s")? + AFTER_CALL_MS;
     Ok((author, ms("orchestrator.simulation_s")?, ms("orchestrator.scoring_s")?))
 }
 
@@ -68,12 +73,14 @@ pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Complaint> {
     let again = config.number("orchestrator.asks_again").min(10);
     Ok(vec![
         format!(
-            "# A question waits {} s for its answer (author.timeout_s); with reading and checking, its attempt ends after {} s.",
+            "# A server may be silent for {} s (author.timeout_s), and a call may take {} s (author.longest_s); with reading and \
+             checking, an attempt ends after {} s.",
             config.number("author.timeout_s"),
+            config.number("author.longest_s"),
             author / 1_000
         ),
         format!(
-            "# Without an answer in time it is put {} at most (orchestrator.asks_again); each counts in `socrates cost`.",
+            "# Without an answer in time a question is put {} at most (orchestrator.asks_again); each counts in `socrates cost`.",
             crate::words::plural(usize::try_from(again + 1).unwrap_or(1), "time")
         ),
         format!(
@@ -115,6 +122,26 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
     Style::from_settings(&asked).map(|style| style.settings()).map_err(broken)
 }
 
+/// What behaviors are made from, as a setting of jobs: a model that writes rules in its proposal is not asked for them again.
+pub(crate) fn behaviors_by(author: &AuthorSpec, style: &BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let compiled =
+        author.is_model() && Style::from_settings(style).is_ok_and(|style| socrates_author::compiled::compiles(&style));
+    if compiled { BTreeMap::from([(BEHAVIORS_BY.to_owned(), BY_PROPOSAL.to_owned())]) } else { BTreeMap::new() }
+}
+
+/// Whether the author reads the texts of requests itself; rules have the grammar.
+pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Complaint> {
+    let word = config.text("author.reading");
+    match word.as_str() {
+        "model" => Ok(author.is_model()),
+        "grammar" => Ok(false),
+        _ => {
+            let what = format!("`author.reading`: `{word}` is unknown; allowed: model, grammar");
+            Err(Complaint::input(what, "`socrates config author` prints the manual"))
+        }
+    }
+}
+
 /// The writer of paths, as a setting of jobs; empty where the author writes them.
 pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Complaint> {
     let word = config.text("author.paths_by");
@@ -122,9 +149,10 @@ pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<
         "model" => Ok(BTreeMap::new()),
         // Rules have the solver anyway, and their results stay the same results.
         "solver" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
-        "solver" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
+        "model_alone" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
+        "solver" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
         _ => {
-            let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, solver");
+            let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, model_alone, solver");
             Err(Complaint::input(what, "`socrates config author` prints the manual"))
         }
     }
@@ -225,13 +253,15 @@ mod tests {
 
     #[test]
     fn the_time_that_is_configured_is_the_time_that_an_author_has() {
-        let slow = config(&["author.timeout_s=600"]);
-        assert_eq!(keys(&slow).unwrap().timeout, Some(Duration::from_secs(600)));
+        let slow = config(&["author.timeout_s=500", "author.longest_s=600", "author.stream=false"]);
+        let known = keys(&slow).unwrap();
+        assert_eq!(known.silence.zip(known.longest), Some((Duration::from_secs(500), Duration::from_secs(600))));
+        assert!(known.in_one_piece && !keys(&config(&[])).unwrap().in_one_piece);
         let (author, ..) = deadlines_ms(&slow).unwrap();
         assert!(author > 600_000, "the attempt of {author} ms does not end before its call");
         let told = consequences(&slow).unwrap().join("\n");
-        assert!(told.contains("600 s") && told.contains("630 s") && told.contains("4 times"), "{told}");
-        for wrong in ["author.timeout_s=0", "author.timeout_s=100000", "orchestrator.simulation_s=0"] {
+        assert!(told.contains("500 s") && told.contains("630 s") && told.contains("4 times"), "{told}");
+        for wrong in ["author.timeout_s=0", "author.longest_s=100000", "orchestrator.simulation_s=0"] {
             let key = wrong.split('=').next().unwrap();
             assert!(deadlines_ms(&config(&[wrong])).unwrap_err().what.contains(key), "{wrong}");
         }
@@ -264,7 +294,7 @@ mod tests {
         assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
         let by = |word: &str| paths_by(&config(&[&format!("author.paths_by={word}")]), &AuthorSpec::Auto);
         assert!(by("model").unwrap().is_empty() && by("solver").unwrap()["paths_by"] == "solver");
-        assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, solver"));
+        assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, model_alone, solver"));
         let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
         assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");
         assert!(style(&config(&[])).unwrap().is_empty());

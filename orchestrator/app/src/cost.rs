@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize as _;
 use serde_json::{Value, json};
+use socrates_author::{compiled, paths_by};
 use socrates_model::{FaultCode, Signature};
 use socrates_orchestrator::{pipeline, price_of};
 
@@ -21,6 +22,8 @@ struct Sum {
     input: u64,
     cached: u64,
     output: u64,
+    /// Of the output, what was thinking and stands in no text.
+    thought: u64,
     estimated: bool,
     /// Of the calls, those that got no answer: their tokens are not known.
     unanswered: u64,
@@ -32,6 +35,7 @@ impl Sum {
         self.input += other.input;
         self.cached += other.cached;
         self.output += other.output;
+        self.thought += other.thought;
         self.estimated |= other.estimated;
         self.unanswered += other.unanswered;
     }
@@ -63,19 +67,20 @@ pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&P
     }
     let width = total.keys().map(String::len).max().unwrap_or(0).max(7);
     talk.line(&format!(
-        "{:width$}  {:>6}  {:>10}  {:>10}  {:>10}  cost",
-        "author", "calls", "tokens in", "of cache", "tokens out"
+        "{:width$}  {:>6}  {:>10}  {:>10}  {:>10}  {:>10}  cost",
+        "author", "calls", "tokens in", "of cache", "tokens out", "of thought"
     ));
     for (model, sum) in &total {
         let mark = if sum.estimated { "~" } else { "" };
         let cost = money(model, sum, &prices)
             .map_or_else(|| "unknown price".to_owned(), |(cost, of)| format!("{cost:.4} {of}"));
         talk.line(&format!(
-            "{model:width$}  {:>6}  {:>10}  {:>10}  {:>10}  {cost}",
+            "{model:width$}  {:>6}  {:>10}  {:>10}  {:>10}  {:>10}  {cost}",
             sum.calls,
             format!("{mark}{}", sum.input),
             sum.cached,
-            format!("{mark}{}", sum.output)
+            format!("{mark}{}", sum.output),
+            sum.thought
         ));
     }
     for (model, sum) in total.iter().filter(|(_, sum)| sum.unanswered > 0) {
@@ -96,7 +101,7 @@ fn lines(models: &BTreeMap<String, Sum>, prices: &BTreeMap<String, Price>) -> Ve
         .map(|(model, sum)| {
             let cost = money(model, sum, prices);
             json!({"author": model, "calls": sum.calls, "tokens_in": sum.input, "cached": sum.cached,
-                "tokens_out": sum.output, "estimated": sum.estimated, "unanswered": sum.unanswered,
+                "tokens_out": sum.output, "thought": sum.thought, "estimated": sum.estimated, "unanswered": sum.unanswered,
                 "cost": cost.as_ref().map(|(cost, _)| cost), "currency": cost.as_ref().map(|(_, currency)| currency)})
         })
         .collect()
@@ -161,6 +166,10 @@ fn sums(provenance: &Value) -> BTreeMap<String, Sum> {
             let Some([input, output]) = tokens(&exchange) else { continue };
             let name = |key: &str| exchange.get(key).and_then(Value::as_str).filter(|name| !name.is_empty());
             let model = name("model").or_else(|| name("author")).unwrap_or("unknown");
+            // Compiled rules and the solver's paths are no call of anybody.
+            if [compiled::NAME, paths_by::NAME].contains(&model) {
+                continue;
+            }
             let unanswered = u64::from(name("model").is_none() && (input, output) == (0, 0));
             let how = exchange.get("how").cloned().unwrap_or_default();
             models.entry(model.to_owned()).or_default().add(&Sum {
@@ -168,6 +177,7 @@ fn sums(provenance: &Value) -> BTreeMap<String, Sum> {
                 input,
                 output,
                 cached: how.get("cached").and_then(Value::as_u64).unwrap_or(0),
+                thought: how.get("thought").and_then(Value::as_u64).unwrap_or(0),
                 estimated: how.get("estimated").and_then(Value::as_bool).unwrap_or(false),
                 unanswered,
             });
@@ -207,15 +217,17 @@ mod tests {
 
     #[test]
     fn every_exchange_counts_once() {
-        let exchange = |model: &str, answer: &str, tokens: [u64; 2]| json!({"model": model, "answer": answer, "tokens": tokens, "how": {"cached": 10, "estimated": false}});
+        let exchange = |model: &str, answer: &str, tokens: [u64; 2]| json!({"model": model, "answer": answer, "tokens": tokens, "how": {"cached": 10, "thought": 5, "estimated": false}});
         let (bad, good) =
             (exchange("openai:gpt-4o-2024", "a", [100, 20]), exchange("openai:gpt-4o-2024", "b", [120, 30]));
         let provenance = json!({"jobs": [
             {"attempts": [{"exchanges": [bad, "refused text"]}, {"exchanges": [good]}], "exchanges": [good]},
             {"attempts": [], "exchanges": [exchange("offline/1", "c", [0, 0])]},
+            {"attempts": [], "exchanges": [exchange("compiled/1", "d", [0, 0])]},
+            {"attempts": [], "exchanges": [exchange("solver/1", "e", [0, 0])]},
         ]});
         let found = sums(&provenance);
-        let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, estimated: false, unanswered: 0 };
+        let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, thought: 10, estimated: false, unanswered: 0 };
         assert_eq!(found["openai:gpt-4o-2024"], sum);
         let price =
             |input, cached_input| Price { input, cached_input, output: 10.0, currency: dollars(), _valid_from: None };

@@ -33,6 +33,7 @@ pub mod collect;
 pub mod compare;
 mod conclude;
 pub mod config;
+pub mod console;
 mod cores;
 pub mod cost;
 mod coverage;
@@ -67,6 +68,8 @@ mod library_index;
 pub mod logs;
 mod many;
 pub mod map;
+#[cfg(test)]
+mod mending_tests;
 pub mod merge;
 #[cfg(test)]
 mod motion_runs;
@@ -89,6 +92,7 @@ mod progress;
 mod protocol;
 pub mod query;
 pub mod rates;
+mod raw_map;
 mod reading;
 mod refused;
 pub mod replay;

@@ -1,16 +1,19 @@
-//! `map`: list, check, draw, generate.
+//! `map`: list, check, draw, generate, annotate, score.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use socrates_annotate::Options;
+use socrates_draw::MapNote;
 use socrates_maps::random::Kind;
-use socrates_model::Fault;
+use socrates_model::{Fault, Location, Point};
 
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
 use crate::prepare::load_location;
+use crate::raw_map;
 use crate::words::plural;
 
 /// Largest floor plan that is read, bytes.
@@ -63,10 +66,25 @@ pub fn check(talk: &Printer, name: &str) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// Draws a location with its node ids.
+/// Draws a location with its node ids; a map without a scene graph with what is found on it, and with remarks.
 pub fn draw(talk: &Printer, name: &str, out: &Path) -> Result<(), Complaint> {
-    let (location, _) = load_location(name, Path::new("."))?;
-    let svg = socrates_draw::annotated_map(&location);
+    let (location, notes) = match raw_map::file_of(Path::new(name)) {
+        Some(file) => {
+            let map = raw_map::annotated(&file, &Options::default())?;
+            talk.line(&format!("note       {}", raw_map::note(&map, name)));
+            (map.location, raw_map::notes(&map.annotation))
+        }
+        None => (load_location(name, Path::new("."))?.0, Vec::new()),
+    };
+    picture(&location, &notes, out)?;
+    talk.line(&format!("look       {}", out.display()));
+    talk.result(&json!({ "picture": out.display().to_string() }));
+    Ok(())
+}
+
+/// Writes the picture of a location, as SVG or PNG.
+fn picture(location: &Location, notes: &[MapNote], out: &Path) -> Result<(), Complaint> {
+    let svg = socrates_draw::annotated_map_with(location, notes);
     let bytes = if out.extension().is_some_and(|ext| ext == "svg") {
         svg.into_bytes()
     } else {
@@ -74,9 +92,113 @@ pub fn draw(talk: &Printer, name: &str, out: &Path) -> Result<(), Complaint> {
             .map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
     };
     std::fs::write(out, bytes)
-        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))?;
-    talk.line(&format!("look       {}", out.display()));
-    talk.result(&json!({ "picture": out.display().to_string() }));
+        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))
+}
+
+/// What a person says about a map that is annotated.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct AnnotateOptions {
+    /// Folder to write; by default the map's name with `-annotated` where the command is given.
+    pub out: Option<PathBuf>,
+    /// `x,y` of a point on the floor that is annotated, map frame, m.
+    pub keep: Option<String>,
+    /// `x,y;x,y;…`: corners of a polygon outside of which nothing is looked at, map frame, m.
+    pub within: Option<String>,
+    /// `x,y` of points in rooms that are cars of elevators, map frame, m.
+    pub elevators: Vec<String>,
+}
+
+/// Finds the places of a map without a scene graph, and writes a location folder with a picture.
+pub fn annotate(talk: &Printer, given: &Path, options: &AnnotateOptions) -> Result<(), Complaint> {
+    let file = raw_map::given(given)?;
+    let said = Options {
+        keep: options.keep.as_deref().map(|text| point("--keep", text)).transpose()?,
+        within: match options.within.as_deref() {
+            Some(text) => text.split(';').map(|corner| point("--within", corner)).collect::<Result<_, _>>()?,
+            None => Vec::new(),
+        },
+        elevators: options.elevators.iter().map(|text| point("--elevator", text)).collect::<Result<_, _>>()?,
+    };
+    let map = raw_map::annotated(&file, &said)?;
+    let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-annotated", map.location.name)));
+    if out.join(socrates_maps::GRAPH).exists() {
+        return Err(Complaint::input(
+            format!("`{}` has a scene graph already, which is left as it is", out.display()),
+            "name another folder with `--out`, or remove its scene_graph.json",
+        ));
+    }
+    talk.line(&format!("found      {}: {}", map.location.name, raw_map::summary(&map.annotation)));
+    for (number, remark) in map.annotation.remarks.iter().enumerate() {
+        talk.line(&format!("remark {:<4}{remark}", number + 1));
+    }
+    folder(&map.files, &out)?;
+    let drawn = out.join("annotation.png");
+    picture(&map.location, &raw_map::notes(&map.annotation), &drawn)?;
+    let shown = files::shell(&out);
+    talk.line(&format!("wrote      {} ({})", out.display(), map.files.keys().cloned().collect::<Vec<_>>().join(", ")));
+    talk.line(&format!("look       {}", drawn.display()));
+    talk.line(&format!("next       socrates new my.toml --location {shown}"));
+    talk.result(&json!({
+        "location": out.display().to_string(),
+        "counts": map.annotation.counts,
+        "nodes": map.annotation.graph.nodes().len(),
+        "edges": map.annotation.graph.edges().len(),
+        "remarks": map.annotation.remarks,
+        "picture": drawn.display().to_string(),
+        "files": map.files.keys().collect::<Vec<_>>(),
+    }));
+    Ok(())
+}
+
+/// `x,y` in the map frame, m.
+fn point(option: &str, text: &str) -> Result<Point, Complaint> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        [x, y] if x.is_finite() && y.is_finite() && text.split(',').count() == 2 => Ok(Point::new(*x, *y)),
+        _ => Err(Complaint::input(
+            format!("`{option} {text}` is no point"),
+            format!("write x,y in the map frame, m: {option} 4.5,-2"),
+        )),
+    }
+}
+
+/// Says how near the second annotation of a map comes to the first.
+pub fn score(talk: &Printer, first: &str, second: &str) -> Result<(), Complaint> {
+    let load = |name: &str| load_location(name, Path::new(".")).map(|(location, _)| location);
+    let score = socrates_annotate::score::score(&load(first)?, &load(second)?);
+    let rows = [
+        ("nodes, 1.0 m", score.nodes),
+        ("structural, 1.0 m", score.structural),
+        ("doors, 0.5 m", score.doors),
+        ("edges", score.edges),
+    ];
+    talk.line(&format!(
+        "{:<19}{:>6}{:>8}{:>9}{:>11}{:>8}{:>6}",
+        "", "first", "second", "matched", "precision", "recall", "F1"
+    ));
+    for (name, row) in rows {
+        talk.line(&format!(
+            "{name:<19}{:>6}{:>8}{:>9}{:>11.2}{:>8.2}{:>6.2}",
+            row.first, row.second, row.matched, row.precision, row.recall, row.f1
+        ));
+    }
+    let (ways, valid) = (score.detours, score.validity);
+    talk.line(&format!("types              {:.2} of the matched nodes have the same place class", score.types));
+    talk.line(&format!(
+        "detours            median {:.2}, 95 % {:.2} of {}, {} not reached",
+        ways.p50,
+        ways.p95,
+        plural(ways.pairs, "way"),
+        ways.unreached
+    ));
+    talk.line(&format!(
+        "validity           {} of {} blocked for a radius of 0.3 m, {}, {} in walls",
+        valid.blocked,
+        plural(valid.edges, "edge"),
+        plural(valid.parts, "part"),
+        plural(valid.in_walls, "node")
+    ));
+    talk.result(&json!({ "first": first, "second": second, "score": score }));
     Ok(())
 }
 
@@ -125,7 +247,8 @@ pub(crate) fn not_usable(seed: u64, kind: Kind, faults: &[Fault]) -> Complaint {
     Complaint::faults(message, faults, "please report the kind and the seed; another seed gives another world")
 }
 
-fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
+/// Writes files into a folder.
+fn folder(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
     let cannot = |path: &Path, why: std::io::Error| {
         Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
     };
@@ -134,6 +257,11 @@ fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Resul
         let path = out.join(name);
         std::fs::write(&path, bytes).map_err(|why| cannot(&path, why))?;
     }
+    Ok(())
+}
+
+fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
+    folder(files, out)?;
     talk.line(&format!("wrote      {} ({})", out.display(), files.keys().cloned().collect::<Vec<_>>().join(", ")));
     talk.line(&format!("next       socrates map draw {}", out.display()));
     talk.result(&json!({ "location": out.display().to_string(), "files": files.keys().collect::<Vec<_>>() }));
@@ -164,5 +292,34 @@ mod tests {
         let castle = random(&talk, 7, "castle", Some(&folder.path().join("castle-7"))).unwrap_err();
         assert!(castle.short().contains("`castle`") && castle.short().contains("warehouse"), "{}", castle.short());
         assert!(!folder.path().join("castle-7").exists());
+    }
+
+    #[test]
+    fn a_map_without_a_scene_graph_is_a_location_and_annotate_writes_it_elsewhere() {
+        let talk = Printer::to_nobody(Format::Json);
+        let folder = tempfile::tempdir().unwrap();
+        let raw = folder.path().join("mine");
+        let shipped = socrates_maps::shipped::files("office").unwrap();
+        let map = |name: &str| shipped[name].clone();
+        self::folder(&BTreeMap::from(["map.yaml", "map.png"].map(|name| (name.to_owned(), map(name)))), &raw).unwrap();
+        let (location, files) = load_location(&raw.display().to_string(), Path::new(".")).unwrap();
+        assert_eq!(location.name, "mine");
+        assert!(!location.graph.nodes().is_empty() && files.contains_key("scene_graph.json"));
+        assert_eq!(std::fs::read_dir(&raw).unwrap().count(), 2, "nothing is written into the folder");
+        let out = folder.path().join("made");
+        let options = AnnotateOptions { out: Some(out.clone()), ..AnnotateOptions::default() };
+        annotate(&talk, &raw, &options).unwrap();
+        assert_eq!(socrates_maps::load(&out).unwrap().graph, location.graph);
+        assert!(out.join("annotation.png").is_file() && out.join("annotation.json").is_file());
+        let again = annotate(&talk, &raw, &options).unwrap_err();
+        assert!(again.what.contains("has a scene graph already"), "{}", again.what);
+        score(&talk, "office", &out.display().to_string()).unwrap();
+        for (keep, part) in [("4", "`--keep 4` is no point"), ("900,900", "cannot be annotated")] {
+            let wrong = AnnotateOptions { keep: Some(keep.to_owned()), ..AnnotateOptions::default() };
+            let told = annotate(&talk, &raw, &wrong).unwrap_err();
+            assert!(told.what.contains(part), "{}", told.what);
+        }
+        let nothing = annotate(&talk, &folder.path().join("nowhere"), &options).unwrap_err();
+        assert!(nothing.what.contains("is no map"), "{}", nothing.what);
     }
 }

@@ -31,7 +31,7 @@ pub(crate) struct Scenario {
     pub(crate) made: Made,
     pub(crate) run: Recording,
     pub(crate) report: Report,
-    seed: u64,
+    pub(crate) seed: u64,
 }
 
 /// How one kind of change fared.

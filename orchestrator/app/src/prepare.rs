@@ -16,6 +16,7 @@ use crate::config::Config;
 use crate::exit::Complaint;
 use crate::files;
 use crate::layout;
+use crate::raw_map;
 use crate::run_options::RunOptions;
 use crate::words::plural;
 
@@ -136,7 +137,7 @@ pub(crate) fn prepare_text(
         complaint.causes = problems.iter().map(|bad| bad.told(shown)).collect();
         complaint
     })?;
-    let notes = read_nav2(&mut request, folder)?;
+    let mut notes = read_nav2(&mut request, folder)?;
     if let Some(options) = options {
         apply(&mut request, options)?;
     }
@@ -145,12 +146,11 @@ pub(crate) fn prepare_text(
         request.robot.planners.insert(0, PlannerName::reference());
     }
     let of_request = |why: Complaint| Complaint { what: format!("the request `{shown}`: {}", why.what), ..why };
-    let (mut location, location_files) = load_location(&request.location, folder).map_err(of_request)?;
+    let (mut location, location_files, raw) = load_any(&request.location, folder).map_err(of_request)?;
+    notes.extend(raw);
     if let Some(description) = &request.location_description {
         location.description.clone_from(description);
     }
-    let reading = socrates_offline::read(&request, &location);
-    check_reading(&reading, &request, &location, shown)?;
     let mut pins = BTreeMap::new();
     if let Some(file) = &request.proposal {
         pins.insert(Role::Proposal, read_pin(Role::Proposal, &folder.join(file), |all| all.proposal)?);
@@ -161,8 +161,11 @@ pub(crate) fn prepare_text(
     if let Some(file) = &request.behaviors {
         pins.insert(Role::Behaviors, read_pin(Role::Behaviors, &folder.join(file), |all| all.behaviors)?);
     }
-    check_people(&request, &reading, &pins, shown)?;
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
+    let pinned = request.proposal.as_ref().map(|file| folder.join(file));
+    let reading = read(&request, &location, crate::authors::reads(config, &author)?, pinned.as_deref());
+    check_reading(&reading, &request, &location, shown)?;
+    check_people(&request, &reading, &pins, shown)?;
     // What a language model would read out of the task is not known beforehand.
     if author == AuthorSpec::Offline && !pins.contains_key(&Role::Proposal) && !pins.contains_key(&Role::Paths) {
         check_ways(&reading, &request, &location, shown)?;
@@ -188,7 +191,9 @@ pub(crate) fn prepare_text(
         // that were put in matters.
         style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
     }
+    let behaviors = crate::authors::behaviors_by(&author, &style);
     style.extend(crate::authors::paths_by(config, &author)?);
+    style.extend(behaviors);
     Ok(Prepared {
         name: slug(name),
         file: None,
@@ -206,6 +211,19 @@ pub(crate) fn prepare_text(
         author,
         author_note,
     })
+}
+
+/// How the request is read: by the grammar, or as far as it is stated where its author reads the texts. A pinned proposal whose author read
+/// them brings its reading along.
+fn read(request: &Request, location: &Location, by_author: bool, pinned: Option<&Path>) -> Reading {
+    let Some(pinned) = pinned else {
+        let read = if by_author { socrates_offline::stated } else { socrates_offline::read };
+        return read(request, location);
+    };
+    let beside = pinned.with_file_name(layout::READING.file_name());
+    let kept = std::fs::read(beside).ok().and_then(|bytes| serde_json::from_slice::<Reading>(&bytes).ok());
+    let kept = kept.filter(|reading| reading.by.is_author() && by_author);
+    kept.unwrap_or_else(|| socrates_offline::read(request, location))
 }
 
 /// Refuses a request whose reading says that it cannot be made, with what would settle it.
@@ -321,8 +339,16 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// A location by shipped name or folder, with its files.
+/// A location by shipped name or folder, with its files. A map without a scene graph is annotated.
 pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Complaint> {
+    load_any(name, folder).map(|(location, files, _)| (location, files))
+}
+
+/// A location with its files, and what is to be said of it where the program annotated it.
+type Loaded = (Location, BTreeMap<String, Vec<u8>>, Option<String>);
+
+/// A location by shipped name, folder or map file.
+fn load_any(name: &str, folder: &Path) -> Result<Loaded, Complaint> {
     let wrong = |faults: Vec<Fault>| {
         Complaint::faults(
             format!("the location `{name}` is not usable"),
@@ -335,15 +361,20 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
         )
     };
     if let Some(files) = socrates_maps::shipped::files(name) {
-        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files));
+        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files, None));
     }
     let beside = folder.join(name);
-    let dir = if beside.is_dir() { beside } else { PathBuf::from(name) };
+    let dir = if beside.exists() { beside } else { PathBuf::from(name) };
+    if let Some(file) = raw_map::file_of(&dir) {
+        let map = raw_map::annotated(&file, &socrates_annotate::Options::default())?;
+        let note = raw_map::note(&map, name);
+        return Ok((map.location, map.files, Some(note)));
+    }
     if !dir.is_dir() {
         return Err(Complaint::input(
             format!("there is no location `{name}`"),
             format!(
-                "give a folder with map.yaml and scene_graph.json, or one of: {}",
+                "give a folder with a map (map.yaml and its image), or one of: {}",
                 socrates_maps::shipped::names().join(", ")
             ),
         ));
@@ -357,7 +388,7 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
             files.insert(file, bytes);
         }
     }
-    Ok((location, files))
+    Ok((location, files, None))
 }
 
 /// A pinned artifact in our own form, or out of a file of the published tool, of whose artifacts one is taken.

@@ -82,11 +82,11 @@ pub async fn show(talk: &Printer, id: &str) -> Result<(), Complaint> {
         };
         talk.line(&format!("who        {count} {} ({}){group}{speed}", role.name, plain(&json!(role.relation))));
         for rule in &role.rules {
-            let when: Vec<String> = rule.when.iter().map(socrates_model::Trigger::phrase).collect();
+            let when = socrates_model::Trigger::phrases(&rule.when);
             let within = rule.within_m.map_or_else(String::new, |[low, high]| format!(" ({low} to {high} m)"));
             let says = rule.gesture.map_or_else(String::new, |gesture| format!(", gestures {gesture}"));
             let lasts = rule.for_s.map_or_else(String::new, |[low, high]| format!(", for {low} to {high} s"));
-            talk.line(&format!("             {}{within}: {}{says}{lasts}", when.join(" and "), rule.act.phrase()));
+            talk.line(&format!("             {when}{within}: {}{says}{lasts}", rule.act.phrase()));
         }
     }
     for line in &card.script {

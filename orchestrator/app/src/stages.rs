@@ -26,6 +26,8 @@ pub(crate) struct StageJob {
     pub(crate) attempts: u32,
     /// Working time of all of them, ms.
     pub(crate) wall_ms: u64,
+    /// Characters that the author of the running attempt has written so far; 0 where none writes.
+    pub(crate) characters: u64,
     /// Codes of the faults for which it was done again.
     pub(crate) codes: Vec<&'static str>,
     /// Remark of its result.
@@ -44,6 +46,7 @@ impl From<&PastJob> for StageJob {
             state: job.state,
             attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
             wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
+            characters: 0,
             codes: faults.map(|fault| fault.code.code()).collect(),
             remark: job.remark.clone(),
             blames: job.blames,
@@ -60,6 +63,7 @@ impl From<&JobStatus> for StageJob {
             state: job.state,
             attempts: job.attempts,
             wall_ms: job.wall_ms,
+            characters: job.characters,
             codes: job.faults.iter().map(|fault| fault.code.code()).collect(),
             remark: job.remark.clone(),
             blames: None,
@@ -99,6 +103,7 @@ fn told(job: &Value) -> Option<StageJob> {
         state: serde_json::from_value(job.get("state")?.clone()).ok()?,
         attempts: u32::try_from(attempts.len()).unwrap_or(u32::MAX),
         wall_ms: attempts.iter().filter_map(|attempt| attempt.get("wall_ms")?.as_u64()).sum(),
+        characters: 0,
         codes: faults.filter_map(|fault| Some(serde_json::from_value::<Fault>(fault).ok()?.code.code())).collect(),
         remark: remark.unwrap_or_default().to_owned(),
         blames: None,
@@ -139,7 +144,10 @@ fn part(stage: Stage, jobs: &[&StageJob], wrong: bool, verdict: Option<Verdict>)
         "…"
     };
     let ms: u64 = jobs.iter().map(|job| job.wall_ms).sum();
+    // Of several jobs of the stage, what all of them have heard.
+    let written: u64 = last.values().map(|job| job.characters).sum();
     let took = match (attempts, one.state) {
+        _ if written > 0 => plural(usize::try_from(written).unwrap_or(usize::MAX), "character"),
         (0, JobState::Succeeded) => "known".to_owned(),
         (0, _) if unreached => "not reached".to_owned(),
         (0, _) => "waiting".to_owned(),
@@ -183,6 +191,7 @@ mod tests {
             state: JobState::Succeeded,
             attempts,
             wall_ms,
+            characters: 0,
             codes: Vec::new(),
             remark: String::new(),
             blames: None,
@@ -232,6 +241,8 @@ mod tests {
         assert_eq!(of(&[failed], Some(ScenarioEnd::Failed)), "paths ✘ 12 ms (3 retries)");
         let dead = StageJob { state: JobState::Dead, ..job(Stage::Simulation, 0, 0, 0) };
         assert_eq!(of(&[dead], Some(ScenarioEnd::Failed)), "simulation – not reached");
+        let writes = StageJob { state: JobState::Leased, characters: 1240, ..job(Stage::Paths, 0, 2, 0) };
+        assert_eq!(of(&[writes], None), "paths … 1240 characters (1 retry)");
         let waiting = StageJob { state: JobState::Ready, ..job(Stage::Simulation, 0, 0, 0) };
         assert_eq!(of(&[waiting], None), "simulation … waiting");
         let item = |item: &str, state: JobState| StageJob {

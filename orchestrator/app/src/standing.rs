@@ -392,11 +392,16 @@ async fn being_made(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<St
         bus.close().await;
         reply
     });
-    Ok(match answer.await.ok().flatten() {
-        // The one batch of a run needs no name.
-        Some(reply) => Standing { batches: Vec::new(), ..Standing { phase: Phase::GoingOn, ..standing }.with(&reply) },
-        None => standing,
-    })
+    let Some(reply) = answer.await.ok().flatten() else { return Ok(standing) };
+    let mut standing = Standing { phase: Phase::GoingOn, ..standing };
+    // Of one that goes on, the orchestrator knows more than its store: how much its authors have written.
+    if let ([row], [line]) = (standing.rows.as_mut_slice(), reply.scenarios.as_slice())
+        && row.result.is_none()
+    {
+        row.told = stages::line_of(line);
+    }
+    // The one batch of a run needs no name.
+    Ok(Standing { batches: Vec::new(), ..standing.with(&reply) })
 }
 
 /// The scenarios of the job store of a folder, with what they did where that is wanted or there is only one.

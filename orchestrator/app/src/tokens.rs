@@ -29,13 +29,14 @@ pub async fn tokens(talk: &Printer, out: Option<&Path>) -> Result<(), Complaint>
     talk.line("two people, warehouse, o200k tokens: messages + form + picture = all");
     let mut found = serde_json::Map::new();
     for (name, style) in styles() {
-        let counted = questions.iter().map(|question| count(question, &style)).collect::<Result<Vec<_>, _>>()?;
+        let questions = || asked(&questions, &style);
+        let counted = questions().map(|question| count(question, &style)).collect::<Result<Vec<_>, _>>()?;
         let sum = |part: fn(&Counted) -> usize| counted.iter().map(part).sum::<usize>();
         let (words, form, picture) = (sum(|c| c.words), sum(|c| c.form), sum(|c| c.picture));
         let each: Vec<String> = counted
             .iter()
-            .zip(STAGES)
-            .map(|(c, stage)| format!("{stage} {} + {} + {}", c.words, c.form, c.picture))
+            .zip(questions())
+            .map(|(c, question)| format!("{} {} + {} + {}", question.stage, c.words, c.form, c.picture))
             .collect();
         let all = words + form + picture;
         talk.line(&format!("{name:24} {words:5} + {form:4} + {picture:3} = {all:5}   {}", each.join(" · ")));
@@ -55,7 +56,9 @@ pub async fn tokens(talk: &Printer, out: Option<&Path>) -> Result<(), Complaint>
         write(&questions, &plain, out)?;
         talk.line(&format!("wrote      {}", out.display()));
     }
-    talk.line("serial calls: 2 (the proposal; then paths and the behaviors of everybody side by side)");
+    talk.line(
+        "serial calls: 2 (the proposal; then the paths, and beside them the behaviors where trees are written freely)",
+    );
     let median = own_time(talk, &questions, &plain).await?;
     talk.line(&format!("own time per call: median {median} µs"));
     talk.result(&json!({"styles": found, "serial_calls": 2, "own_us": u64::try_from(median).unwrap_or(u64::MAX)}));
@@ -71,8 +74,14 @@ async fn questions() -> Result<Vec<Question>, Complaint> {
     let request: Request = toml::from_str(REQUEST).map_err(|why| ours(&why.to_string()))?;
     let location =
         socrates_maps::shipped::load(&request.location).map_err(|_faults| ours("a shipped location is broken"))?;
-    let reading = socrates_offline::read(&request, &location);
+    let reading = socrates_offline::stated(&request, &location);
     questions_of(request, reading, location).await
+}
+
+/// The questions that a model is asked in a style: not those whose answer is compiled.
+fn asked<'a>(questions: &'a [Question], style: &Style) -> impl Iterator<Item = &'a Question> {
+    let compiled = socrates_author::compiled::compiles(style);
+    questions.iter().filter(move |question| !(compiled && question.stage == Stage::Behaviors))
 }
 
 /// The same of any request.
@@ -96,9 +105,10 @@ pub(crate) async fn expected(
 ) -> Result<Vec<(Stage, [usize; 2])>, Complaint> {
     let tokenizer = tiktoken_rs::o200k_base_singleton();
     let mut found = Vec::new();
-    for question in questions_of(request.clone(), reading.clone(), location.clone()).await? {
-        let counted = count(&question, style)?;
-        let answer = Offline.ask(&question).await.map_err(|why| ours(&why.message))?.text;
+    let questions = questions_of(request.clone(), reading.clone(), location.clone()).await?;
+    for question in asked(&questions, style) {
+        let counted = count(question, style)?;
+        let answer = Offline.ask(question).await.map_err(|why| ours(&why.message))?.text;
         let sent = counted.words + counted.form + counted.picture;
         found.push((question.stage, [sent, tokenizer.encode_ordinary(&answer).len()]));
     }
@@ -122,7 +132,8 @@ fn styles() -> [(&'static str, Style); 8] {
 
 /// Writes what is sent: one text per stage, and the picture.
 fn write(questions: &[Question], style: &Style, out: &Path) -> Result<(), Complaint> {
-    for (question, stage) in questions.iter().zip(STAGES) {
+    for question in asked(questions, style) {
+        let stage = question.stage;
         let request = request_of(question, style)?;
         let mut text = String::new();
         for turn in &request.turns {
@@ -140,7 +151,8 @@ fn write(questions: &[Question], style: &Style, out: &Path) -> Result<(), Compla
 /// Median time to write a question, picture included, and to read and check its answer, µs.
 async fn own_time(talk: &Printer, questions: &[Question], style: &Style) -> Result<u128, Complaint> {
     let mut all: Vec<u128> = Vec::new();
-    for (question, stage) in questions.iter().zip(STAGES) {
+    for question in asked(questions, style) {
+        let stage = question.stage;
         let text = Offline.ask(question).await.map_err(|why| ours(&why.message))?.text;
         let mut spent: Vec<u128> = Vec::new();
         for _ in 0..ROUNDS {

@@ -146,10 +146,12 @@ fn token_of(file: &Path) -> Result<String, Complaint> {
 }
 
 /// A token that nobody guesses: 128 bits of the system's chance.
-fn new_token() -> Result<String, Complaint> {
+pub(crate) fn new_token() -> Result<String, Complaint> {
     let mut bytes = [0_u8; TOKEN_CHARS / 2];
     let drawn = std::fs::File::open("/dev/urandom").and_then(|mut file| file.read_exact(&mut bytes));
-    drawn.map_err(|why| Complaint::input(format!("no token can be drawn: {why}"), "--token-file names one"))?;
+    drawn.map_err(|why| {
+        Complaint::input(format!("no token can be drawn: {why}"), "`socrates doctor` checks this machine")
+    })?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 

@@ -114,7 +114,12 @@ impl Worker {
     pub(crate) fn beat(&self) -> Message {
         let grants = self.work.iter().map(|work| &work.grant).chain(&self.queue);
         let held: Vec<Held> = grants
-            .map(|grant| Held { key: grant.spec.key.clone(), attempt: grant.attempt, fence: grant.fence, progress: 0 })
+            .map(|grant| Held {
+                key: grant.spec.key.clone(),
+                attempt: grant.attempt,
+                fence: grant.fence,
+                characters: 0,
+            })
             .collect();
         Message::Beat(Beat { instance: self.instance.clone(), held, draining: false })
     }

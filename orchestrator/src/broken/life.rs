@@ -239,7 +239,7 @@ impl Life {
             key: grant.spec.key.clone(),
             attempt: grant.attempt,
             fence: grant.fence,
-            progress: 0,
+            characters: 0,
         };
         let held: Vec<Held> = self.workers[n].held.iter().map(of).collect();
         let beat = Beat { instance: self.workers[n].name(), held: held.clone(), draining: false };

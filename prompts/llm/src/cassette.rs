@@ -243,9 +243,11 @@ mod tests {
             model: "m".into(),
             tokens: (1, 2),
             cached: 0,
+            thought: 0,
             estimated: false,
             rung: None,
             steps: Vec::new(),
+            without_picture: false,
             limits: None,
         }
     }

@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::dialect::Rung;
 use crate::limits::Limits;
 
-/// Who speaks a turn.
+/// The speaker of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Speaker {
@@ -21,7 +21,7 @@ pub enum Speaker {
 /// One turn of a conversation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Turn {
-    /// Who speaks.
+    /// The speaker.
     pub speaker: Speaker,
     /// What is said.
     pub text: String,
@@ -91,6 +91,9 @@ pub struct ChatAnswer {
     /// Tokens of the input that came from the server's cache.
     #[serde(default)]
     pub cached: u64,
+    /// Tokens of the output that were thinking and stand in no text.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub thought: u64,
     /// Whether the tokens are an estimate.
     #[serde(default)]
     pub estimated: bool,
@@ -100,7 +103,15 @@ pub struct ChatAnswer {
     /// What was stepped down from on the way, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<String>,
+    /// Whether the pictures of the question were left out, as the server refuses them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub without_picture: bool,
     /// What the server says is left of its rates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+const fn is_none(count: &u64) -> bool {
+    *count == 0
 }

@@ -1,19 +1,24 @@
 //! The client: one question, one answer.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use reqwest::header::{CONTENT_TYPE, HeaderValue};
 use reqwest::{RequestBuilder, Response, Url};
 
 use crate::chat::{ChatAnswer, ChatRequest};
-use crate::dialect::{Dialect, Learned, Rung};
+use crate::dialect::{Dialect, Known, Learned, Rung};
 use crate::error::{ChatError, Objection};
+use crate::events::Events;
 use crate::key::ApiKey;
-use crate::wire::{self, Call};
+use crate::listener::Listener;
+use crate::wire::{self, Call, Parts};
 use crate::{limits, ordered};
 
 /// Version of the Messages format that is spoken.
 const ANTHROPIC_VERSION: &str = "2023-06-01";
+/// How much larger an answer may be in parts than as a whole: around each word of it stand about 300 bytes.
+const AROUND_PARTS: usize = 64;
 
 /// Where and how to ask.
 #[derive(Debug, Clone)]
@@ -28,10 +33,17 @@ pub struct ClientConfig {
     pub model: String,
     /// Longest time to connect. Default 5 s.
     pub connect_timeout: Duration,
-    /// Longest time for the whole call, the body included. Default 90 s.
-    pub timeout: Duration,
-    /// Largest body that is read, bytes. Default 2 MiB.
+    /// How long the server may be silent, before its answer as within it. Default 5 min: a model that thinks may say nothing.
+    pub silence: Duration,
+    /// Longest time of a call, from connecting to the last byte. Default 30 min.
+    pub longest: Duration,
+    /// Largest answer that is read, bytes. Default 2 MiB. Around the parts of an answer stands more, which is not kept.
     pub max_bytes: usize,
+    /// Whether answers are asked for in parts, so that they can be heard while they come. Default true; a server that refuses
+    /// is asked without.
+    pub stream: bool,
+    /// Hears how far an answer is. Default nobody.
+    pub listener: Listener,
     /// The one rung to use; without one, the dialect's ladder from the top, or from where it was left.
     pub rung: Option<Rung>,
     /// Where rungs are remembered.
@@ -54,8 +66,11 @@ impl ClientConfig {
             key,
             model: model.to_owned(),
             connect_timeout: Duration::from_secs(5),
-            timeout: Duration::from_secs(90),
+            silence: Duration::from_secs(300),
+            longest: Duration::from_secs(1800),
             max_bytes: 2 * 1024 * 1024,
+            stream: true,
+            listener: Listener::default(),
             rung: None,
             learned: Learned::default(),
             old_token_limit: !base_url.contains("api.openai.com"),
@@ -100,7 +115,6 @@ impl ChatClient {
         }
         let mut builder = reqwest::Client::builder()
             .connect_timeout(config.connect_timeout)
-            .timeout(config.timeout)
             .redirect(reqwest::redirect::Policy::none())
             .user_agent(concat!("socrates/", env!("CARGO_PKG_VERSION")));
         if !config.proxy {
@@ -116,38 +130,64 @@ impl ChatClient {
         &self.config.model
     }
 
-    /// Asks once. A server that refuses the form of the question is asked in the next simpler form: what it refused it
-    /// has not answered. The rung on which it answers is remembered.
+    /// Asks once. A server that refuses the form of the question, its picture, or an answer in parts is asked again without
+    /// what it refused: it has not answered yet. How it answers is remembered.
     ///
     /// # Errors
     /// [`ChatError`]; nothing is tried again here.
     pub async fn ask(&self, request: &ChatRequest) -> Result<ChatAnswer, ChatError> {
         let server = format!("{} {}", self.base, self.config.model);
+        let known = self.config.learned.of(&server);
+        let mut rungs = self.rungs(request, known.rung).into_iter();
+        let Some(rung) = rungs.next() else {
+            return Err(ChatError::Setup { why: "there is no way to ask".to_owned() });
+        };
+        let has_picture = request.turns.iter().any(|turn| turn.png.is_some());
+        let mut way = Way { rung, stream: self.config.stream && known.streams, picture: has_picture && known.pictures };
         let mut steps = Vec::new();
-        let mut rungs = self.rungs(request, &server).into_iter().peekable();
-        while let Some(rung) = rungs.next() {
-            match self.call(request, rung).await {
+        if has_picture && !way.picture {
+            steps.push("asked without its picture, which the server refused before".to_owned());
+        }
+        loop {
+            let asked = if way.picture { Cow::Borrowed(request) } else { Cow::Owned(without_pictures(request)) };
+            let error = match self.call(&asked, way).await {
                 Ok(mut answer) => {
-                    if request.schema.is_some() {
-                        self.config.learned.keep(&server, rung);
-                    }
+                    // Of now: another question may have taught something meanwhile.
+                    let known = self.config.learned.of(&server);
+                    self.config.learned.keep(&server, self.learned(known, way, request, has_picture));
                     answer.steps = steps;
+                    answer.without_picture = has_picture && !way.picture;
                     return Ok(answer);
                 }
-                Err(error) => match rungs.peek() {
-                    Some(next) if self.refuses_form(&error, request) => {
-                        tracing::info!(%rung, %next, %error, "the server refuses the form of the question");
-                        steps.push(format!("asked as `{next}`, as `{rung}` was refused: {error}"));
-                    }
-                    Some(_) | None => return Err(error),
-                },
+                Err(error) => error,
+            };
+            let Some((simpler, what)) = self.simpler(way, rungs.as_slice().first().copied(), &error, request) else {
+                return Err(error);
+            };
+            if simpler.rung != way.rung {
+                rungs.next();
             }
+            if way.picture && !simpler.picture {
+                tracing::warn!(model = %self.config.model, %error, "the server refuses the picture and is asked without it");
+            } else {
+                tracing::info!(%what, %error, "the server refuses how it was asked");
+            }
+            steps.push(format!("{what}: {error}"));
+            way = simpler;
         }
-        Err(ChatError::Setup { why: "there is no way to ask".to_owned() })
+    }
+
+    /// What an answer that came this way tells of the server.
+    fn learned(&self, known: Known, way: Way, request: &ChatRequest, has_picture: bool) -> Known {
+        Known {
+            rung: if request.schema.is_some() { Some(way.rung) } else { known.rung },
+            streams: if self.config.stream { way.stream } else { known.streams },
+            pictures: if has_picture { way.picture } else { known.pictures },
+        }
     }
 
     /// The rungs to try, best first.
-    fn rungs(&self, request: &ChatRequest, server: &str) -> Vec<Rung> {
+    fn rungs(&self, request: &ChatRequest, known: Option<Rung>) -> Vec<Rung> {
         if request.schema.is_none() {
             return vec![Rung::Plain];
         }
@@ -160,59 +200,72 @@ impl ChatClient {
             ladder.retain(|rung| *rung != Rung::Grammar);
             ladder.insert(0, Rung::Grammar);
         }
-        let known = self.config.learned.rung(server).and_then(|rung| ladder.iter().position(|step| *step == rung));
+        let known = known.and_then(|rung| ladder.iter().position(|step| *step == rung));
         ladder.split_off(known.unwrap_or(0))
     }
 
-    /// Whether the server would have taken the question in a simpler form. Vendors name what they refuse; other servers
-    /// answer anything, up to 500, to a form that they do not know.
-    fn refuses_form(&self, error: &ChatError, request: &ChatRequest) -> bool {
-        let local = !matches!(self.config.dialect, Dialect::OpenAi | Dialect::Anthropic | Dialect::Gemini)
-            || !self.base.domain().is_some_and(|host| host.contains('.'));
-        match error {
-            ChatError::Rejected { status: 400 | 422 | 501, to, .. } => {
-                request.schema.is_some()
-                    && match to {
-                        Objection::Form => true,
-                        Objection::Model => false,
-                        Objection::Unsaid => local,
-                    }
-            }
-            ChatError::Server { status: 500 | 501, retry_after_ms: None, .. } => request.schema.is_some() && local,
-            ChatError::Rejected { .. }
-            | ChatError::Server { .. }
-            | ChatError::Unreachable { .. }
-            | ChatError::Timeout { .. }
-            | ChatError::SlowDown { .. }
-            | ChatError::Key { .. }
-            | ChatError::TooLarge { .. }
-            | ChatError::Refused { .. }
-            | ChatError::Unreadable { .. }
-            | ChatError::Setup { .. } => false,
+    /// The same question without what the server refuses of it, and that in words; none where the server would refuse it in any
+    /// form. Vendors name what they refuse; other servers answer anything, up to 500, to what they do not know.
+    fn simpler(&self, way: Way, next: Option<Rung>, error: &ChatError, request: &ChatRequest) -> Option<(Way, String)> {
+        let local = !self.config.dialect.is_vendor() || !self.base.domain().is_some_and(|host| host.contains('.'));
+        let to = objection(error, local)?;
+        let rung = || {
+            let rung = next.filter(|_| request.schema.is_some())?;
+            Some((Way { rung, ..way }, format!("asked as `{rung}`, as `{}` was refused", way.rung)))
+        };
+        let whole = || {
+            way.stream.then(|| {
+                (Way { stream: false, ..way }, "asked for the answer in one piece, as parts were refused".to_owned())
+            })
+        };
+        let blind = || {
+            way.picture
+                .then(|| (Way { picture: false, ..way }, "asked without its picture, which was refused".to_owned()))
+        };
+        match to {
+            Objection::Picture if way.picture => blind(),
+            Objection::Stream if way.stream => whole(),
+            Objection::Model | Objection::Nothing => None,
+            Objection::Form => rung(),
+            // It names a thing that was not sent, or none: what servers know least is left out first.
+            Objection::Unsaid | Objection::Picture | Objection::Stream if local => rung().or_else(whole).or_else(blind),
+            Objection::Unsaid | Objection::Picture | Objection::Stream => None,
         }
     }
 
-    /// One HTTP request.
-    async fn call(&self, request: &ChatRequest, rung: Rung) -> Result<ChatAnswer, ChatError> {
-        let call = Call { request, config: &self.config, rung };
+    /// One HTTP request, within the time of a call.
+    async fn call(&self, request: &ChatRequest, way: Way) -> Result<ChatAnswer, ChatError> {
+        self.config.listener.tell(0);
+        let call = Call { request, config: &self.config, rung: way.rung, stream: way.stream };
+        let whole = tokio::time::timeout(self.config.longest, self.exchange(&call)).await;
+        whole.unwrap_or_else(|_late| Err(ChatError::Late { limit_ms: ms(self.config.longest) }))
+    }
+
+    async fn exchange(&self, call: &Call<'_>) -> Result<ChatAnswer, ChatError> {
         let url = Url::parse(&format!("{}{}", self.config.base_url, call.path()))
             .map_err(|error| ChatError::Setup { why: error.to_string() })?;
         let http = self.http.post(url).header(CONTENT_TYPE, "application/json").body(ordered::text(&call.body()));
-        let response = self.signed(http)?.send().await.map_err(|error| self.broken(error))?;
+        let sent = self.heard(self.signed(http)?.send()).await?;
+        let response = sent.map_err(|error| self.broken(error))?;
         let status = response.status();
         let headers = response.headers().clone();
         tracing::debug!(status = status.as_u16(), model = %self.config.model, "language model answered");
-        let bytes = self.read(response).await?;
-        if status.is_success() {
-            let mut answer = call.answer(&bytes)?;
-            answer.limits = limits::limits(&headers);
-            // A server may repeat what it was sent; the key is not for keeping.
-            answer.text = self.config.key.strike_from(&answer.text);
-            answer.model = self.config.key.strike_from(&answer.model);
-            Ok(answer)
+        let kind = headers.get(CONTENT_TYPE).and_then(|kind| kind.to_str().ok()).unwrap_or_default();
+        let in_parts = call.stream && kind.starts_with("text/event-stream");
+        let bytes = if in_parts && status.is_success() {
+            self.put_together(response).await?
         } else {
-            Err(wire::complaint(status.as_u16(), &bytes, &headers, &self.config))
+            self.read(response).await?
+        };
+        if !status.is_success() {
+            return Err(wire::complaint(status.as_u16(), &bytes, &headers, &self.config));
         }
+        let mut answer = call.answer(&bytes)?;
+        answer.limits = limits::limits(&headers);
+        // A server may repeat what it was sent; the key is not for keeping.
+        answer.text = self.config.key.strike_from(&answer.text);
+        answer.model = self.config.key.strike_from(&answer.model);
+        Ok(answer)
     }
 
     /// A request with the headers that every request to the server has.
@@ -246,10 +299,16 @@ impl ChatClient {
         &self.config
     }
 
+    /// Waits for the server, as long as it may be silent.
+    async fn heard<T>(&self, waited: impl Future<Output = T>) -> Result<T, ChatError> {
+        let silent = ChatError::Timeout { limit_ms: ms(self.config.silence) };
+        tokio::time::timeout(self.config.silence, waited).await.map_err(|_silent| silent)
+    }
+
     /// The body, counted as it comes: a length in a header is only a claim.
     async fn read(&self, mut response: Response) -> Result<Vec<u8>, ChatError> {
         let mut bytes = Vec::new();
-        while let Some(part) = response.chunk().await.map_err(|error| self.broken(error))? {
+        while let Some(part) = self.heard(response.chunk()).await?.map_err(|error| self.broken(error))? {
             if bytes.len() + part.len() > self.config.max_bytes {
                 return Err(ChatError::TooLarge { most: self.config.max_bytes });
             }
@@ -258,10 +317,50 @@ impl ChatClient {
         Ok(bytes)
     }
 
+    /// The body that comes in parts, as it would have come as a whole. Whoever listens hears each of them.
+    async fn put_together(&self, mut response: Response) -> Result<Vec<u8>, ChatError> {
+        let most = self.config.max_bytes.saturating_mul(AROUND_PARTS);
+        let (mut events, mut parts) = (Events::new(self.config.max_bytes), Parts::new(&self.config));
+        let mut size = 0_usize;
+        loop {
+            let heard = self.heard(response.chunk()).await?;
+            let Some(bytes) = heard.map_err(|error| self.broken_off(error, parts.characters()))? else { break };
+            size = size.saturating_add(bytes.len());
+            if size > most {
+                return Err(ChatError::TooLarge { most });
+            }
+            for event in events.take(&bytes).map_err(|error| self.struck(error))? {
+                parts.take(&event)?;
+            }
+            self.config.listener.tell(parts.characters());
+        }
+        if let Some(event) = events.end().map_err(|error| self.struck(error))? {
+            parts.take(&event)?;
+        }
+        parts.whole()
+    }
+
+    /// The error without the key, where a server repeats it.
+    fn struck(&self, mut error: ChatError) -> ChatError {
+        if let ChatError::Unreadable { why } = &mut error {
+            *why = self.config.key.strike_from(why);
+        }
+        error
+    }
+
+    /// A connection that broke within an answer in parts.
+    fn broken_off(&self, error: reqwest::Error, characters: u64) -> ChatError {
+        let broken = self.broken(error);
+        if let (ChatError::Unreachable { why }, 1..) = (&broken, characters) {
+            return ChatError::Broken { characters, why: why.clone() };
+        }
+        broken
+    }
+
     fn broken(&self, error: reqwest::Error) -> ChatError {
         if error.is_timeout() {
-            let limit_ms = u64::try_from(self.config.timeout.as_millis()).unwrap_or(u64::MAX);
-            return ChatError::Timeout { limit_ms };
+            // Of the connection, or of a small question with a limit of its own.
+            return ChatError::Timeout { limit_ms: ms(self.config.connect_timeout) };
         }
         let error = error.without_url();
         let mut why = error.to_string();
@@ -272,4 +371,45 @@ impl ChatClient {
         }
         ChatError::Unreachable { why: self.config.key.strike_from(&why) }
     }
+}
+
+/// How a question is put.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Way {
+    rung: Rung,
+    stream: bool,
+    picture: bool,
+}
+
+/// What the server objects to in how it was asked; none where asking in another way changes nothing. One of this machine may fail
+/// at what it does not know.
+fn objection(error: &ChatError, local: bool) -> Option<Objection> {
+    match error {
+        // Some answer as if nobody served such a question.
+        ChatError::Rejected { status: 404 | 415, to: to @ (Objection::Picture | Objection::Stream), .. }
+        | ChatError::Rejected { status: 400 | 422 | 501, to, .. } => Some(*to),
+        ChatError::Server { status: 500 | 501, retry_after_ms: None, to, .. } if local => Some(*to),
+        ChatError::Rejected { .. }
+        | ChatError::Server { .. }
+        | ChatError::Unreachable { .. }
+        | ChatError::Timeout { .. }
+        | ChatError::Late { .. }
+        | ChatError::Broken { .. }
+        | ChatError::SlowDown { .. }
+        | ChatError::Key { .. }
+        | ChatError::TooLarge { .. }
+        | ChatError::Refused { .. }
+        | ChatError::Unreadable { .. }
+        | ChatError::Setup { .. } => None,
+    }
+}
+
+fn without_pictures(request: &ChatRequest) -> ChatRequest {
+    let mut request = request.clone();
+    request.turns.iter_mut().for_each(|turn| turn.png = None);
+    request
+}
+
+fn ms(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

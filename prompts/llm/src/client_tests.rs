@@ -105,13 +105,72 @@ async fn generate_content_is_asked_in_the_agreed_form_and_read() {
     let answer = client(&served, Dialect::Gemini, |_| {}).ask(&request()).await.unwrap();
     assert_eq!((answer.text.as_str(), answer.tokens, answer.model.as_str()), ("{}", (9, 7), "small-3"));
     let seen = served.seen().await;
-    assert!(seen.head.starts_with("POST /v1/v1beta/models/small:generateContent "), "{}", seen.head);
+    assert!(seen.head.starts_with("POST /v1/v1beta/models/small:streamGenerateContent?alt=sse "), "{}", seen.head);
     assert!(seen.head.contains("x-goog-api-key: sk-very-secret"), "{}", seen.head);
     let body = object(&seen.body);
     assert_eq!(body["systemInstruction"]["parts"][0]["text"], "Be brief.");
     assert_eq!(body["contents"][0]["parts"][1]["inlineData"]["data"], "AQID");
     assert_eq!(body["generationConfig"]["responseMimeType"], "application/json");
     assert_eq!(body["generationConfig"]["responseJsonSchema"]["propertyOrdering"], json!(["n"]));
+}
+
+#[tokio::test]
+async fn responses_are_asked_in_the_agreed_form_and_read() {
+    let told = json!({"model": "small-4", "status": "completed", "error": null, "output": [
+            {"type": "reasoning", "summary": []},
+            {"type": "message", "content": [{"type": "output_text", "text": "{\"yes\":"}, {"type": "output_text", "text": " 1}"}]}],
+        "usage": {"input_tokens": 40, "input_tokens_details": {"cached_tokens": 32}, "output_tokens": 9,
+            "output_tokens_details": {"reasoning_tokens": 6}}});
+    let served = Served::once(200, &[], &told.to_string()).await;
+    let with_an_answer = |mut asked: ChatRequest| {
+        let said = Turn { speaker: Speaker::Assistant, text: "{}".into(), png: None };
+        asked.turns.push(said);
+        asked
+    };
+    let answer = client(&served, Dialect::Responses, |_| {}).ask(&with_an_answer(request())).await.unwrap();
+    assert_eq!((answer.text.as_str(), answer.finish, answer.tokens), ("{\"yes\": 1}", Finish::Stop, (40, 9)));
+    assert_eq!((answer.cached, answer.thought, answer.model.as_str()), (32, 6, "small-4"));
+    let seen = served.seen().await;
+    assert!(seen.head.starts_with("POST /v1/responses "), "{}", seen.head);
+    assert!(seen.head.to_lowercase().contains("authorization: bearer sk-very-secret"), "{}", seen.head);
+    let body = object(&seen.body);
+    assert_eq!(body["input"][0], json!({"role": "system", "content": "Be brief."}));
+    let content = &body["input"][1]["content"];
+    assert_eq!(content[0], json!({"type": "input_text", "text": "Say yes."}));
+    let picture = json!({"type": "input_image", "image_url": "data:image/png;base64,AQID", "detail": "high"});
+    assert_eq!(content[1], picture);
+    assert_eq!(body["input"][2], json!({"role": "assistant", "content": "{}"}));
+    let format = &body["text"]["format"];
+    assert_eq!((&format["type"], &format["name"]), (&json!("json_schema"), &json!("answer")));
+    assert_eq!((&format["strict"], &format["schema"]["type"]), (&json!(true), &json!("object")));
+    assert_eq!((&body["max_output_tokens"], &body["store"]), (&json!(100), &json!(false)));
+    assert!(body.get("seed").is_none() && body.get("messages").is_none(), "{body}");
+}
+
+#[tokio::test]
+async fn responses_that_are_no_answer_are_told_apart() {
+    let ask = async |body: Value| {
+        let served = Served::once(200, &[], &body.to_string()).await;
+        client(&served, Dialect::Responses, |config| config.rung = Some(Rung::Schema)).ask(&request()).await
+    };
+    let said = json!([{"type": "message", "content": [{"type": "output_text", "text": "{\"ye"}]}]);
+    let cut = json!({"status": "incomplete", "incomplete_details": {"reason": "max_output_tokens"}, "output": said});
+    assert_eq!(ask(cut).await.unwrap().finish, Finish::Cut);
+    let failed =
+        |code: &str| json!({"status": "failed", "error": {"code": code, "message": "no sk-very-secret"}, "output": []});
+    let told = ask(failed("rate_limit_exceeded")).await.unwrap_err();
+    assert!(matches!(&told, ChatError::SlowDown { why, .. } if why == "no ***"), "{told}");
+    assert!(matches!(ask(failed("server_error")).await, Err(ChatError::Server { .. })));
+    assert!(matches!(ask(failed("invalid_prompt")).await, Err(ChatError::Rejected { status: 400, .. })));
+    let later = ask(json!({"status": "queued", "output": []})).await.unwrap_err().to_string();
+    assert!(later.contains("`queued`"), "{later}");
+    // A form that is refused is named by its parameter.
+    let no = json!({"error": {"message": "Invalid schema", "param": "text.format.schema"}}).to_string();
+    let yes = json!({"output": [{"type": "message", "content": [{"type": "output_text", "text": "{}"}]}]}).to_string();
+    let served = Served::replies(vec![Reply::new(400, &no), Reply::new(200, &yes)]).await;
+    let answer = client(&served, Dialect::Responses, |_| {}).ask(&request()).await.unwrap();
+    assert_eq!((answer.rung, answer.estimated), (Some(Rung::Object), true));
+    assert_eq!(object(&served.all_seen().await[1].body)["text"]["format"]["type"], "json_object");
 }
 
 #[tokio::test]
@@ -130,6 +189,14 @@ async fn a_cut_answer_and_a_refusal_are_told_apart_in_every_format() {
     let refusals = [
         (Dialect::OpenAi, json!({"choices": [{"message": {"refusal": "I will not"}}]})),
         (Dialect::OpenAi, json!({"choices": [{"message": {"content": ""}, "finish_reason": "content_filter"}]})),
+        (
+            Dialect::Responses,
+            json!({"output": [{"type": "message", "content": [{"type": "refusal", "refusal": "no"}]}]}),
+        ),
+        (
+            Dialect::Responses,
+            json!({"status": "incomplete", "incomplete_details": {"reason": "content_filter"}, "output": []}),
+        ),
         (Dialect::Anthropic, json!({"content": [], "stop_reason": "refusal"})),
         (Dialect::Gemini, json!({"promptFeedback": {"blockReason": "SAFETY"}})),
         (Dialect::Gemini, json!({"candidates": [{"finishReason": "PROHIBITED_CONTENT"}]})),
@@ -173,7 +240,11 @@ async fn what_a_server_objects_to_is_read_from_code_parameter_and_sentence_in_th
         (json!({"message": ""}), Objection::Unsaid),
     ] {
         let served = Served::once(400, &[], &json!({ "error": error }).to_string()).await;
-        let told = ask(&served, |config| config.rung = Some(Rung::Schema)).await.unwrap_err();
+        let alone =
+            client(&served, Dialect::OpenAi, |config| (config.rung, config.stream) = (Some(Rung::Schema), false));
+        let mut asked = request();
+        asked.turns.pop();
+        let told = alone.ask(&asked).await.unwrap_err();
         assert!(matches!(&told, ChatError::Rejected { to, .. } if *to == objection), "{error}: {told:?}");
     }
 }
@@ -232,10 +303,10 @@ async fn large_endless_torn_and_missing_answers_are_no_trap() {
     let flood = Served::replies(vec![Reply::Flood(200 << 20)]).await;
     assert_eq!(ask(&flood, |_| {}).await, Err(ChatError::TooLarge { most: 2 << 20 }));
     let drip = Served::replies(vec![Reply::Drip]).await;
-    let endless = ask(&drip, |config| config.timeout = Duration::from_millis(300)).await;
-    assert_eq!(endless, Err(ChatError::Timeout { limit_ms: 300 }));
+    let endless = ask(&drip, |config| config.longest = Duration::from_millis(300)).await;
+    assert_eq!(endless, Err(ChatError::Late { limit_ms: 300 }));
     let silent = Served::silent().await;
-    let slow = ask(&silent, |config| config.timeout = Duration::from_millis(200)).await;
+    let slow = ask(&silent, |config| config.silence = Duration::from_millis(200)).await;
     assert_eq!(slow, Err(ChatError::Timeout { limit_ms: 200 }));
     let torn = Served::replies(vec![Reply::Torn("{\"choices\": [".into())]).await;
     assert!(matches!(ask(&torn, |_| {}).await, Err(ChatError::Unreachable { .. })));
@@ -247,7 +318,7 @@ async fn large_endless_torn_and_missing_answers_are_no_trap() {
 async fn what_is_no_answer_is_unreadable_in_every_format() {
     let deep = format!("{}{}", "[".repeat(10_000), "]".repeat(10_000));
     let bodies = ["<html>".to_owned(), String::new(), "{}".into(), "{\"x\": NaN}".into(), deep];
-    for dialect in [Dialect::OpenAi, Dialect::Anthropic, Dialect::Gemini] {
+    for dialect in [Dialect::OpenAi, Dialect::Responses, Dialect::Anthropic, Dialect::Gemini] {
         for body in &bodies {
             let served = Served::once(200, &[], body).await;
             let told = client(&served, dialect, |_| {}).ask(&request()).await;

@@ -1,4 +1,4 @@
-//! Who serves, and how far each of them enforces the form of an answer.
+//! Kinds of servers, and how far each of them enforces the form of an answer.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -71,11 +71,13 @@ impl FromStr for Rung {
     }
 }
 
-/// Three ways to put a conversation into JSON.
+/// Ways to put a conversation into JSON.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wire {
     /// `POST {base}/chat/completions`.
     Chat,
+    /// `POST {base}/responses`.
+    Responses,
     /// `POST {base}/v1/messages`.
     Messages,
     /// `POST {base}/v1beta/models/{model}:generateContent`.
@@ -87,6 +89,8 @@ pub enum Wire {
 pub enum Dialect {
     /// Chat Completions of the vendor, and servers that do the same.
     OpenAi,
+    /// Responses of the same vendor, and servers that do the same.
+    Responses,
     /// Anthropic Messages.
     Anthropic,
     /// Gemini generateContent.
@@ -99,24 +103,37 @@ pub enum Dialect {
     LlamaCpp,
     /// LM Studio.
     LmStudio,
+    /// A page at which a person answers, behind Chat Completions.
+    Console,
 }
 
 impl Dialect {
     /// Every kind.
-    pub const ALL: [Self; 7] =
-        [Self::OpenAi, Self::Anthropic, Self::Gemini, Self::Vllm, Self::Ollama, Self::LlamaCpp, Self::LmStudio];
+    pub const ALL: [Self; 9] = [
+        Self::OpenAi,
+        Self::Responses,
+        Self::Anthropic,
+        Self::Gemini,
+        Self::Vllm,
+        Self::Ollama,
+        Self::LlamaCpp,
+        Self::LmStudio,
+        Self::Console,
+    ];
 
     /// The name as settings spell it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::OpenAi => "openai",
+            Self::Responses => "responses",
             Self::Anthropic => "anthropic",
             Self::Gemini => "gemini",
             Self::Vllm => "vllm",
             Self::Ollama => "ollama",
             Self::LlamaCpp => "llamacpp",
             Self::LmStudio => "lmstudio",
+            Self::Console => "console",
         }
     }
 
@@ -124,13 +141,14 @@ impl Dialect {
     #[must_use]
     pub const fn default_url(self) -> &'static str {
         match self {
-            Self::OpenAi => "https://api.openai.com/v1",
+            Self::OpenAi | Self::Responses => "https://api.openai.com/v1",
             Self::Anthropic => "https://api.anthropic.com",
             Self::Gemini => "https://generativelanguage.googleapis.com",
             Self::Vllm => "http://127.0.0.1:8000/v1",
             Self::Ollama => "http://127.0.0.1:11434/v1",
             Self::LlamaCpp => "http://127.0.0.1:8080/v1",
             Self::LmStudio => "http://127.0.0.1:1234/v1",
+            Self::Console => "http://127.0.0.1:8790/v1",
         }
     }
 
@@ -138,7 +156,8 @@ impl Dialect {
     #[must_use]
     pub const fn wire(self) -> Wire {
         match self {
-            Self::OpenAi | Self::Vllm | Self::Ollama | Self::LlamaCpp | Self::LmStudio => Wire::Chat,
+            Self::OpenAi | Self::Vllm | Self::Ollama | Self::LlamaCpp | Self::LmStudio | Self::Console => Wire::Chat,
+            Self::Responses => Wire::Responses,
             Self::Anthropic => Wire::Messages,
             Self::Gemini => Wire::Generate,
         }
@@ -148,11 +167,17 @@ impl Dialect {
     #[must_use]
     pub const fn ladder(self) -> &'static [Rung] {
         match self {
-            Self::OpenAi | Self::Ollama | Self::Gemini => &[Rung::Schema, Rung::Object, Rung::Plain],
+            Self::OpenAi | Self::Responses | Self::Ollama | Self::Gemini => &[Rung::Schema, Rung::Object, Rung::Plain],
             Self::Anthropic => &[Rung::Schema, Rung::Tool, Rung::Plain],
             Self::Vllm | Self::LlamaCpp => &[Rung::Schema, Rung::Object, Rung::Grammar, Rung::Plain],
-            Self::LmStudio => &[Rung::Schema, Rung::Plain],
+            Self::LmStudio | Self::Console => &[Rung::Schema, Rung::Plain],
         }
+    }
+
+    /// Whether others run such a server, who name what they refuse; other servers answer anything to what they do not know.
+    #[must_use]
+    pub const fn is_vendor(self) -> bool {
+        matches!(self, Self::OpenAi | Self::Responses | Self::Anthropic | Self::Gemini)
     }
 
     /// Whether such a server takes a grammar in place of a schema.
@@ -185,21 +210,39 @@ impl FromStr for Dialect {
     }
 }
 
-/// What was learned of servers in this process: the rung on which each has answered. Clones share it.
+/// What is known of one server and model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Known {
+    /// The rung on which it has answered; none where no form was asked for yet.
+    pub rung: Option<Rung>,
+    /// Whether it takes questions whose answer is to come in parts.
+    pub streams: bool,
+    /// Whether it takes pictures.
+    pub pictures: bool,
+}
+
+impl Default for Known {
+    /// Of a server that was never asked: it takes everything until it refuses something.
+    fn default() -> Self {
+        Self { rung: None, streams: true, pictures: true }
+    }
+}
+
+/// What was learned of servers in this process: how each has answered. Clones share it.
 #[derive(Debug, Clone, Default)]
-pub struct Learned(Arc<Mutex<BTreeMap<String, Rung>>>);
+pub struct Learned(Arc<Mutex<BTreeMap<String, Known>>>);
 
 impl Learned {
-    /// The rung of a server and model, if it has answered before.
+    /// What is known of a server and model.
     #[must_use]
-    pub fn rung(&self, server: &str) -> Option<Rung> {
-        self.0.lock().ok().and_then(|known| known.get(server).copied())
+    pub fn of(&self, server: &str) -> Known {
+        self.0.lock().ok().and_then(|known| known.get(server).copied()).unwrap_or_default()
     }
 
-    /// Keeps the rung on which a server has answered.
-    pub fn keep(&self, server: &str, rung: Rung) {
-        if let Ok(mut known) = self.0.lock() {
-            known.insert(server.to_owned(), rung);
+    /// Keeps how a server has answered.
+    pub fn keep(&self, server: &str, known: Known) {
+        if let Ok(mut all) = self.0.lock() {
+            all.insert(server.to_owned(), known);
         }
     }
 }

@@ -5,10 +5,16 @@
 pub enum Objection {
     /// The form that the answer was to have: a schema, a grammar or a tool. The same question in a simpler form may be taken.
     Form,
+    /// The picture that came with the question.
+    Picture,
+    /// That the answer was to come in parts.
+    Stream,
     /// The model that was asked.
     Model,
     /// It does not say.
     Unsaid,
+    /// Nothing: it took the request, and failed at the answer.
+    Nothing,
 }
 
 /// Why a request got no answer. Messages hold no address and no key.
@@ -20,11 +26,25 @@ pub enum ChatError {
         /// The transport's own words.
         why: String,
     },
-    /// No whole answer within the time limit.
-    #[error("no answer within {limit_ms} ms")]
+    /// Nothing came from the server for as long as it may be silent.
+    #[error("nothing came from the server within {limit_ms} ms")]
     Timeout {
-        /// The limit, ms.
+        /// How long it may be silent, ms.
         limit_ms: u64,
+    },
+    /// Something came all the time, and no whole answer within the time of a call.
+    #[error("no whole answer within {limit_ms} ms")]
+    Late {
+        /// The time of a call, ms.
+        limit_ms: u64,
+    },
+    /// An answer that came in parts ended before it was whole.
+    #[error("the answer broke off after {characters} characters: {why}")]
+    Broken {
+        /// Characters that had come.
+        characters: u64,
+        /// What ended it.
+        why: String,
     },
     /// The server asks to slow down (429, 529).
     #[error("the server asks to slow down (status {status}): {why}")]
@@ -43,6 +63,8 @@ pub enum ChatError {
         status: u16,
         /// How long it wants us to wait, ms.
         retry_after_ms: Option<u64>,
+        /// What it objects to, where it fails at something that it does not know.
+        to: Objection,
         /// Its words.
         why: String,
     },

@@ -30,7 +30,7 @@ pub fn request_tokens(request: &ChatRequest, dialect: Dialect) -> u64 {
 
 /// Tokens of a picture of `size` pixels (width, height).
 ///
-/// * Chat Completions, by tiles: fitted into 2048 × 2048, then the short side to 768, then 170 for each tile of 512 and 85
+/// * Chat Completions and Responses, by tiles: fitted into 2048 × 2048, then the short side to 768, then 170 for each tile of 512 and 85
 ///   once; 85 at low detail.
 /// * Anthropic: width × height / 750, the long side at most 1568.
 /// * Gemini: 258 up to 384 × 384 and at low detail, else 258 for each tile of 768.
@@ -42,7 +42,13 @@ pub fn picture_tokens(size: (u32, u32), detail: Detail, dialect: Dialect) -> u64
     }
     let tiles = |width: f64, height: f64, side: f64| (width / side).ceil() * (height / side).ceil();
     let tokens = match dialect {
-        Dialect::OpenAi | Dialect::Vllm | Dialect::Ollama | Dialect::LlamaCpp | Dialect::LmStudio => {
+        Dialect::OpenAi
+        | Dialect::Responses
+        | Dialect::Vllm
+        | Dialect::Ollama
+        | Dialect::LlamaCpp
+        | Dialect::LmStudio
+        | Dialect::Console => {
             if detail == Detail::Low {
                 85.0
             } else {

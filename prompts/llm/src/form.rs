@@ -27,13 +27,15 @@ pub fn for_dialect(schema: &Value, dialect: Dialect) -> Value {
     let mut schema = schema.clone();
     match dialect {
         // Lengths of texts are the one bound that strict mode is known to refuse.
-        Dialect::OpenAi => move_bounds(&mut schema, &["minLength", "maxLength"]),
+        Dialect::OpenAi | Dialect::Responses => move_bounds(&mut schema, &["minLength", "maxLength"]),
         Dialect::Anthropic => move_bounds(&mut schema, &BOUNDS),
         Dialect::Gemini => order(&mut schema),
         // Grammar compilers take bounds, but not all of them patterns.
         Dialect::Vllm | Dialect::Ollama | Dialect::LlamaCpp | Dialect::LmStudio => {
             move_bounds(&mut schema, &["pattern", "multipleOf"]);
         }
+        // Its page holds an answer against every bound.
+        Dialect::Console => {}
     }
     schema
 }

@@ -32,10 +32,11 @@ impl ChatClient {
     pub async fn has_model(&self) -> Result<Has, ChatError> {
         let (dialect, model) = (self.config().dialect, self.model());
         let path = match dialect.wire() {
-            Wire::Chat => "/models".to_owned(),
+            Wire::Chat | Wire::Responses => "/models".to_owned(),
             Wire::Messages => format!("/v1/models/{model}"),
             Wire::Generate => format!("/v1beta/models/{model}"),
         };
+        let lists = matches!(dialect.wire(), Wire::Chat | Wire::Responses);
         let (status, body) = match self.get(&path, LIMIT).await {
             Ok(answer) => answer,
             Err(error @ (ChatError::Unreachable { .. } | ChatError::Setup { .. })) => return Err(error),
@@ -47,12 +48,10 @@ impl ChatClient {
         match status {
             // A key that may ask but not list is answered with 403 by some.
             401 => Err(wire::complaint(status, &body, &reqwest::header::HeaderMap::new(), self.config())),
-            200 if dialect.wire() == Wire::Chat => Ok(self.listed(&body)),
+            200 if lists => Ok(self.listed(&body)),
             200 => Ok(Has::Yes),
             // A server that names the model has looked for it; others answer any unknown address with 404.
-            404 if dialect.wire() != Wire::Chat && String::from_utf8_lossy(&body).contains(model) => {
-                Ok(Has::No(Vec::new()))
-            }
+            404 if !lists && String::from_utf8_lossy(&body).contains(model) => Ok(Has::No(Vec::new())),
             _ => Ok(Has::Unsaid),
         }
     }
@@ -70,8 +69,8 @@ impl ChatClient {
         // One serves whatever model it was started with under any name; somebody else's server before others may know more
         // than it lists.
         let whole = match dialect {
-            Dialect::LlamaCpp => false,
-            Dialect::OpenAi => self.config().base_url == dialect.default_url(),
+            Dialect::LlamaCpp | Dialect::Console => false,
+            Dialect::OpenAi | Dialect::Responses => self.config().base_url == dialect.default_url(),
             Dialect::Vllm | Dialect::Ollama | Dialect::LmStudio | Dialect::Anthropic | Dialect::Gemini => true,
         };
         if names.is_empty() || !whole { Has::Unsaid } else { Has::No(names) }

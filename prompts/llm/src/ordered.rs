@@ -4,7 +4,8 @@
 use serde_json::{Map, Value};
 
 /// The value as JSON; members of `properties` stand in the order of `required` beside them, all others by their names.
-pub(crate) fn text(value: &Value) -> String {
+#[must_use]
+pub fn text(value: &Value) -> String {
     match value {
         Value::Object(members) => {
             let required = members.get("required").and_then(Value::as_array);

@@ -16,16 +16,32 @@ pub(crate) enum Reply {
     Whole(u16, Vec<(&'static str, &'static str)>, String),
     /// An answer that claims more bytes than come before the connection closes.
     Torn(String),
-    /// So many bytes, without a length.
+    /// A number of bytes, without a length.
     Flood(usize),
     /// One byte after the other, for ever.
     Drip,
+    /// An answer in parts, each after a pause, ms; then the connection closes, with or without the end that it promised.
+    Parts(Vec<(u64, String)>, Close),
 }
 
 impl Reply {
+    /// An answer in parts, at once.
+    pub(crate) fn parts(texts: &[&str], close: Close) -> Self {
+        Self::Parts(texts.iter().map(|text| (0, (*text).to_owned())).collect(), close)
+    }
+
     pub(crate) fn new(status: u16, body: &str) -> Self {
         Self::Whole(status, Vec::new(), body.to_owned())
     }
+}
+
+/// How an answer in parts ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Close {
+    /// As it should.
+    Well,
+    /// In the middle of what was promised.
+    Early,
 }
 
 /// A running server.
@@ -116,6 +132,18 @@ async fn answer(socket: &mut TcpStream, reply: Reply) {
             while open && sent < count {
                 open = socket.write_all(&part).await.is_ok();
                 sent += part.len();
+            }
+        }
+        Reply::Parts(parts, close) => {
+            let head = "HTTP/1.1 200 X\r\ncontent-type: text/event-stream; charset=utf-8\r\ntransfer-encoding: chunked\r\n\r\n";
+            let mut open = socket.write_all(head.as_bytes()).await.is_ok();
+            for (pause, text) in parts {
+                tokio::time::sleep(std::time::Duration::from_millis(pause)).await;
+                let chunk = format!("{:x}\r\n{text}\r\n", text.len());
+                open = open && socket.write_all(chunk.as_bytes()).await.is_ok();
+            }
+            if open && close == Close::Well {
+                let _sent = socket.write_all(b"0\r\n\r\n").await.is_ok();
             }
         }
         Reply::Drip => {

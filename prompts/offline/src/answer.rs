@@ -25,6 +25,7 @@ impl Offline {
     #[must_use]
     pub fn answer(question: &Question) -> String {
         match question.stage {
+            Stage::Proposal if question.reading.by.is_author() => read_and_proposed(question),
             Stage::Proposal => text(&proposal::propose(question)),
             Stage::Paths => match with_proposal(question, |known| Some(solve::solve(question, known))) {
                 Some(Ok(paths)) => text(&paths),
@@ -39,6 +40,18 @@ impl Offline {
             }
         }
     }
+}
+
+/// A proposal with the account of the request, which is read here as the question leaves it to its author.
+fn read_and_proposed(question: &Question) -> String {
+    let own = crate::read(&question.request, &question.location);
+    let reading = crate::accounted::beside(own, &question.reading);
+    let proposal = proposal::propose(&Question { reading: reading.clone(), ..question.clone() });
+    let mut answer = serde_json::to_value(&proposal).unwrap_or_default();
+    if let Some(members) = answer.as_object_mut() {
+        members.insert("reading".to_owned(), crate::accounted::account(question, &reading, &proposal));
+    }
+    text(&answer)
 }
 
 /// Calls with the question's proposal; a question that came without one gets it from the same rules.
@@ -57,7 +70,7 @@ fn text<T: serde::Serialize>(answer: &T) -> String {
 
 fn behaviors(question: &Question, proposal: &Proposal) -> String {
     let mut humans = Map::new();
-    for human in proposal.humans.iter().filter(|human| question.only.is_empty() || question.only.contains(&human.id)) {
+    for human in question.humans(proposal) {
         let rules = mended::rules(human, proposal, &question.feedback);
         humans.insert(human.id.to_string(), json!({ "description": human.behavior, "rules": rules }));
     }

@@ -118,6 +118,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             | FactKind::RobotStart(_)
             | FactKind::RobotGoal(_)
             | FactKind::RobotAt { .. }
+            | FactKind::Asked { .. }
             | FactKind::Pattern(_) => {}
         }
     }
@@ -152,6 +153,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         | FactKind::MeetsTimes { .. }
         | FactKind::Place(_)
         | FactKind::RobotTask(_)
+        | FactKind::Asked { .. }
         | FactKind::Pattern(_) => true,
     });
     reading.place = reading.place.map(|_| proposal.place);

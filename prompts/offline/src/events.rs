@@ -25,7 +25,7 @@ const CORNER_M: f64 = 5.0;
 /// Largest difference of arrival where ways cross and no card says, s.
 const GAP_S: f64 = 4.0;
 
-/// So many follow the robot within the usual distance, and each one more so much farther behind it, m.
+/// Followers of the robot within the usual distance, and how much farther behind it each one more is, m.
 const FEW_FOLLOW: usize = 3;
 const QUEUE_M: f64 = 0.5;
 
@@ -258,6 +258,7 @@ fn of_fact(
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::Asked { .. }
         | FactKind::Pattern(_) => {}
     }
 }
@@ -336,7 +337,7 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         (Some(gesture), None) => says(list, "", id.into(), gesture),
         (None, _) => {}
     }
-    // Who walks on after what it did does what everybody does: nothing more is to be seen.
+    // A human who walks on after what they did does what everybody does: nothing more is to be seen.
     let before = human.rules.iter().position(|own| own == rule).and_then(|at| at.checked_sub(1));
     let last = before.and_then(|at| human.rules.get(at)).filter(|last| last.when == rule.when);
     let walks = |rule: &Rule| rule.act == Action::Navigate && rule.gesture.is_none();
@@ -360,11 +361,10 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         list.setup(true, source, text, predicate);
     }
     if stated || plain && rule.gesture.is_none() {
-        let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
         let predicate =
             Predicate::Reacts { human: id, when: rule.when.clone(), act: rule.act.clone(), within_s: 3.0 + late_s };
         // Asked for with its reason, it is a must with its reason: the deed alone may come of itself.
-        list.setup(true, source, format!("{} {id} {}", when.join(" and "), done(&rule.act)), predicate);
+        list.setup(true, source, format!("{} {id} {}", Trigger::phrases(&rule.when), done(&rule.act)), predicate);
     }
 }
 
@@ -389,7 +389,7 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
     let said = !source.is_empty();
     let does = |act: &Action| human.rules.iter().any(|rule| rule.act == *act);
     let stands = does(&Action::StandStill) || does(&Action::LookAtRobot) || does(&Action::Block);
-    // Who is told to wait leaves a long gap, but whoever tells it and walks on crosses all the same.
+    // A human who is told to wait leaves a long gap, but whoever tells it and walks on crosses all the same.
     let halts = stands || human.rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait));
     // Somebody else has the robot wait until they are through, or they go elsewhere before it comes.
     let through = proposal.is_let_through(id);

@@ -103,6 +103,7 @@ mod edit_settle;
 mod edit_together;
 mod edit_wish;
 
+mod accounted;
 mod answer;
 mod boards;
 mod chance;
@@ -114,6 +115,7 @@ mod rules;
 mod solve;
 mod spans;
 mod spot;
+mod stated;
 mod statements;
 mod unfit;
 
@@ -152,6 +154,7 @@ pub use answer::Offline;
 pub use card::{Card, catalog};
 pub use edit::{Draft, Edited, edit, settled};
 pub use solve::{impossible, layout};
+pub use stated::{dispute, stated};
 pub use summary::summary;
 pub use understand::CONTEXT_NOTE;
 pub use unfit::Unfit;

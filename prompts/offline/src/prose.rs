@@ -40,8 +40,7 @@ pub(crate) fn behavior(
 
 /// A rule as a sentence: `When they see the robot within 3 m they stop and look at the robot for 5 s.`
 pub(crate) fn sentence(rule: &Rule) -> String {
-    let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
-    let mut text = when.join(" and ");
+    let mut text = Trigger::phrases(&rule.when);
     text.push_str(" they ");
     text.push_str(&rule.act.they());
     if let Some(gesture) = rule.gesture {

@@ -1,44 +1,21 @@
 //! Where in the request the words of a problem stand.
 
-use std::ops::Range;
-
 use socrates_model::fault::Span;
 use socrates_model::statement::TextKey;
 use socrates_model::{Fault, Request};
-
-/// A text of the request.
-pub(crate) fn text_of(request: &Request, key: TextKey) -> &str {
-    match key {
-        TextKey::RoughScenario => request.rough_scenario.as_deref().unwrap_or_default(),
-        TextKey::Task => &request.task,
-        TextKey::SocialContext => &request.social_context,
-    }
-}
 
 /// Says of every problem of a text of the request where its first quote stands there, if it stands there as it is.
 pub(crate) fn mark(request: &Request, problems: &mut [Fault]) {
     for problem in problems {
         let key = TextKey::ALL.into_iter().find(|key| problem.at.is_key(key.name()));
-        let text = key.map(|key| text_of(request, key));
+        let text = key.map(|key| key.text_of(request));
         let quoted = text.zip(problem.quotes.first().filter(|quote| !quote.is_empty()));
         let span = quoted.and_then(|(text, quote)| {
             let from = text.find(quote.as_str())?;
-            span(text, &(from..from + quote.len()))
+            Span::of(text, &(from..from + quote.len()))
         });
         problem.at.span = span.or(problem.at.span);
     }
-}
-
-/// Bytes of a text as a span of characters.
-pub(crate) fn span(text: &str, bytes: &Range<usize>) -> Option<Span> {
-    let chars = |end: usize| u32::try_from(text.get(..end)?.chars().count()).ok();
-    Some(Span { from: chars(bytes.start)?, to: chars(bytes.end)? })
-}
-
-/// Whether a quote stands in a text so that it has all of these bytes.
-pub(crate) fn covers(text: &str, quote: &str, bytes: &Range<usize>) -> bool {
-    !quote.is_empty()
-        && text.match_indices(quote).any(|(from, _)| from <= bytes.start && bytes.end <= from + quote.len())
 }
 
 #[cfg(test)]

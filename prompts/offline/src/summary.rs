@@ -9,6 +9,7 @@ pub fn summary(reading: &Reading) -> String {
     let mut parts: Vec<String> = Vec::new();
     let total = reading.humans.len();
     match total {
+        0 if reading.by.is_author() => parts.push("by the author".to_owned()),
         0 => parts.push(if reading.pattern.is_some() { "no humans" } else { "unguided" }.to_owned()),
         1 => parts.push("1 human".to_owned()),
         n => parts.push(format!("{n} humans")),

@@ -158,7 +158,7 @@ fn unfitting(request: &Request, location: &Location, reading: &mut Reading) {
     reading.pattern = None;
 }
 
-fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let line = line.trim_end_matches('.');
     if line.chars().count() <= 120 {

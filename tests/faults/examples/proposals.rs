@@ -1,9 +1,11 @@
 //! `P-`: proposals, and requests that cannot be read.
 
-use socrates_author::FaultKind;
+use socrates_author::offline::Offline;
+use socrates_author::{FaultKind, Says, attempt};
 use socrates_checks::{check_proposal, check_repeats};
 use socrates_model::job::Stage;
-use socrates_model::{FORMAT, Family, Likeness, Paths, ScenarioId};
+use socrates_model::{FORMAT, Family, FaultCode, Likeness, Paths, ScenarioId};
+use socrates_prompts::Question;
 
 use super::{Examples, injected, keep, office, proposed};
 
@@ -24,6 +26,13 @@ pub(super) async fn examples() -> Examples {
     }
     let (request, location) = office("Drive to the exit", "A visitor comes towards the robot.");
     let mut proposal = proposed(&request, &location).await;
+    let read_by_author =
+        Question::first(request.clone(), socrates_offline::stated(&request, &location), location.clone(), 1);
+    let mut answer: serde_json::Value =
+        serde_json::from_str(&attempt(&Offline, &read_by_author).await.unwrap().exchange.answer).unwrap();
+    answer["reading"].as_object_mut().unwrap().remove("s1");
+    let refused = attempt(&Says(answer.to_string()), &read_by_author).await.unwrap_err();
+    keep(&mut all, refused.faults.into_iter().filter(|fault| fault.code == FaultCode::PAccount));
     let nowhere = Paths {
         format: FORMAT,
         robot: Vec::new(),

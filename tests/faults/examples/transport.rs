@@ -54,7 +54,7 @@ async fn asked(question: &Question, port: u16) -> Vec<Fault> {
     let server = Server { key: None, url: Some(format!("http://127.0.0.1:{port}/v1")) };
     let keys = Keys {
         servers: BTreeMap::from([(Dialect::Ollama, server)]),
-        timeout: Some(Duration::from_millis(500)),
+        silence: Some(Duration::from_millis(500)),
         ..Keys::default()
     };
     let settings = BTreeMap::from([("author".to_owned(), "ollama:m".to_owned())]);

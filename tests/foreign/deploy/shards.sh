@@ -7,17 +7,17 @@
 # shellcheck disable=SC2016 # what is waited for is evaluated later
 set -euo pipefail
 
-told='' lost='' killed=''
+told='' lost='' killed='' spared=()
 slurm=$(cd "$(dirname "$0")/../../../deploy/slurm" && pwd)
 mkdir -p "$1"
 cd "$1"
 shift
 small=(--cpus-per-task=1 --mem=100 --time=5)
 
-# The lowest number of those that run on a machine and have something to show, but for these.
+# The highest number of those that run on a machine and have something to show, but for these: it was begun last and has most to do.
 running() {
   local one
-  for one in $(squeue --noheader --array --jobs "$job" --states RUNNING --nodelist "$1" --format %K | sort -n); do
+  for one in $(squeue --noheader --array --jobs "$job" --states RUNNING --nodelist "$1" --format %K | sort -rn); do
     [[ " ${*:2} " != *" $one "* ]] && begun "$one" && echo "$one" && return 0
   done
   return 1
@@ -36,6 +36,15 @@ hasten() {
 cancel() { patience "timeout 3 scancel $* 2>/dev/null; grep -qs 'CANCEL.* AT' 'socrates-${*: -1}.log'"; }
 ended() { hasten; [ -z "$(squeue --noheader --array --jobs "$1" 2>/dev/null)" ]; }
 
+state() { scontrol show job "$1" | sed -n 's/.*JobState=\([A-Z]*\).*Restarts.*/\1/p; s/.*JobState=\([A-Z]*\).*/\1/p' | head -n 1; }
+# One of those that are left is killed, as for its memory. One that was done before it was struck was not killed: another is.
+strike() {
+  killed=$(running first "$told" "$lost" "${spared[@]}") || return 1
+  cancel --signal=KILL "${job}_$killed"
+  patience '[ -z "$(squeue --noheader --array --jobs "${job}_$killed" --states RUNNING,COMPLETING 2>/dev/null)" ]'
+  [ "$(state "${job}_$killed")" != COMPLETED ] || { spared+=("$killed"); return 1; }
+}
+
 # A misspelt option of the file is refused.
 sed 's/--requeue/--reqeue/' "$slurm/shards.sbatch" >misspelt.sbatch
 misspelt=refused
@@ -49,9 +58,7 @@ cancel --signal=TERM "${job}_$told"
 # Looked for at the last moment: on a slow machine one that ran before may be done by now.
 patience 'lost=$(running second)'
 kill_node second
-# One of the others is killed, as for its memory.
-patience 'killed=$(running first "$told" "$lost")'
-cancel --signal=KILL "${job}_$killed"
+patience strike
 patience 'ended "$job,$early"'
 again=$(SOCRATES_SHARDS=$PWD/socrates-$job sbatch --parsable "${small[@]}" --array="$killed" "$slurm/shards.sbatch" "$@")
 merge=$(sbatch --parsable "${small[@]}" --dependency="afterany:$again" "$slurm/merge.sbatch" "socrates-$job" library)
@@ -62,7 +69,6 @@ patience 'begun 0 && begun 1'
 cancel "${other}_0"
 patience 'ended "$other"'
 
-state() { scontrol show job "$1" | sed -n 's/.*JobState=\([A-Z]*\).*Restarts.*/\1/p; s/.*JobState=\([A-Z]*\).*/\1/p' | head -n 1; }
 restarts() { scontrol show job "$1" | sed -n 's/.*Restarts=\([0-9]*\).*/\1/p' | head -n 1; }
 printf '{"misspelt":"%s","told":%s,"told_again":%s,"lost":%s,"lost_again":%s,"killed":%s,"early":"%s","merge":"%s","canceled":%s,"canceled_again":%s,"job":%s}\n' \
   "$misspelt" "$told" "$(restarts "${job}_$told")" "$lost" "$(restarts "${job}_$lost")" "$killed" "$(state "$early")" "$(state "$merge")" \

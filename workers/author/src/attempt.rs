@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 use socrates_checks::{check_behaviors, check_paths, check_proposal};
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
-use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal};
-use socrates_prompts::{Message, Question, json, parse_behaviors, parse_paths, parse_proposal};
+use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal, Reading};
+use socrates_prompts::{Account, Message, Question, json, parse_account, parse_behaviors, parse_paths, parse_proposal};
 
+use crate::account;
 use crate::author::{Answer, AskError, Author, How};
 use crate::variants;
 
@@ -108,6 +109,8 @@ pub struct Exchange {
 pub struct Made {
     /// The artifact, signed with its author.
     pub written: Written,
+    /// How the author read the request, where it read it itself.
+    pub reading: Option<Reading>,
     /// How it came about.
     pub exchange: Exchange,
 }
@@ -170,12 +173,12 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
     exchange.how = answer.how;
     exchange.injected = answer.injected;
     exchange.answer = answer.text;
-    let (written, faults) = match outcome {
-        Ok(written) => {
-            let faults = check(&written, question);
-            (Some(written), faults)
+    let (written, reading, faults) = match outcome {
+        Ok((written, account)) => {
+            let (reading, faults) = checked(&written, account.as_ref(), question);
+            (Some(written), reading, faults)
         }
-        Err(faults) => (None, faults),
+        Err(faults) => (None, None, faults),
     };
     exchange.faults.clone_from(&faults);
     match written {
@@ -184,7 +187,7 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
             if exchange.answer.contains('<') {
                 written.rewrite();
             }
-            Ok(Made { written, exchange })
+            Ok(Made { written, reading, exchange })
         }
         Some(_) | None => {
             let mut refused = refused(faults, exchange);
@@ -211,11 +214,23 @@ fn chosen(text: &str, question: &Question, exchange: &mut Exchange) -> Result<Op
     Ok((best < all.len()).then(|| all.swap_remove(best).text))
 }
 
-fn read(text: &str, question: &Question) -> Result<Written, Vec<Fault>> {
+/// What a text says: the artifact, and the account of the request where the author reads it itself.
+pub(crate) fn read(text: &str, question: &Question) -> Result<(Written, Option<Account>), Vec<Fault>> {
     match question.stage {
-        Stage::Proposal => parse_proposal(text, question).map(Written::Proposal),
-        Stage::Paths => parse_paths(text, question).map(Written::Paths),
-        Stage::Behaviors => parse_behaviors(text, question).map(Written::Behaviors),
+        Stage::Proposal if question.reading.by.is_author() => {
+            match (parse_proposal(text, question), parse_account(text)) {
+                (Ok(proposal), Ok(account)) => Ok((Written::Proposal(proposal), Some(account))),
+                (Ok(_), Err(faults)) | (Err(faults), Ok(_)) => Err(faults),
+                (Err(mut faults), Err(others)) => {
+                    faults.extend(others);
+                    faults.dedup();
+                    Err(faults)
+                }
+            }
+        }
+        Stage::Proposal => parse_proposal(text, question).map(|proposal| (Written::Proposal(proposal), None)),
+        Stage::Paths => parse_paths(text, question).map(|paths| (Written::Paths(paths), None)),
+        Stage::Behaviors => parse_behaviors(text, question).map(|behaviors| (Written::Behaviors(behaviors), None)),
         Stage::Simulation | Stage::Scoring | Stage::Review => Err(vec![Fault::new(
             FaultCode::JSpec,
             question.stage,
@@ -224,7 +239,22 @@ fn read(text: &str, question: &Question) -> Result<Written, Vec<Fault>> {
     }
 }
 
-/// Every fault of an answer, warnings too.
+/// How the request is read with an answer, where its author reads it, and every fault of the answer, warnings too.
+pub(crate) fn checked(
+    written: &Written,
+    account: Option<&Account>,
+    question: &Question,
+) -> (Option<Reading>, Vec<Fault>) {
+    let (Written::Proposal(proposal), Some(account)) = (written, account) else {
+        return (None, check(written, question));
+    };
+    let mut faults = account::check(account, question);
+    let reading = account::reading(account, proposal, question);
+    faults.extend(check_proposal(proposal, &reading, &question.location));
+    (Some(reading), faults)
+}
+
+/// Every fault of an answer whose author did not read the request itself, warnings too.
 pub(crate) fn check(written: &Written, question: &Question) -> Vec<Fault> {
     let place = &question.location;
     match (written, &question.proposal) {

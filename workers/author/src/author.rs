@@ -13,7 +13,7 @@ pub struct Answer {
     pub text: String,
     /// Tokens in and out; 0 for authors without any.
     pub tokens: (u64, u64),
-    /// Who answered, for provenance: `offline/1`, `openai:<model as the server names it>`.
+    /// Name of the author that answered, for provenance: `offline/1`, `openai:<model as the server names it>`.
     pub model: String,
     /// Whether the text was cut by a limit.
     pub cut: bool,
@@ -43,6 +43,9 @@ pub struct How {
     pub steps: Vec<String>,
     /// Tokens of the input that came from the server's cache.
     pub cached: u64,
+    /// Tokens of the output that were thinking and stand in no text.
+    #[serde(skip_serializing_if = "is_none")]
+    pub thought: u64,
     /// Whether the tokens are our estimate.
     pub estimated: bool,
     /// Width and height of the picture that was sent, pixels.
@@ -51,6 +54,11 @@ pub struct How {
     /// What the server said is left of its rates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+const fn is_none(count: &u64) -> bool {
+    *count == 0
 }
 
 /// Why there is no answer.

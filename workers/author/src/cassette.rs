@@ -134,9 +134,12 @@ fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer, template: O
         model: answer.model.clone(),
         tokens: answer.tokens,
         cached: answer.how.cached,
+        thought: answer.how.thought,
         estimated: answer.how.estimated,
         rung: answer.how.rung.as_deref().and_then(|name| name.parse().ok()),
         steps: answer.how.steps.clone(),
+        // What is kept has no picture in any case.
+        without_picture: false,
         limits: answer.how.limits,
     };
     cassette.keep(request, &kept, template).map_err(|error| unusable(&error))

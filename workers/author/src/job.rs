@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use socrates_llm::Listener;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
-use socrates_model::{FailureClass, Fault};
+use socrates_model::{FailureClass, Fault, Reading};
 use socrates_prompts::Question;
 
 use crate::attempt::{Exchange, Made, Refused, Written, attempt};
@@ -39,6 +40,8 @@ impl Asking {
 pub struct JobAnswer {
     /// The artifact.
     pub written: Written,
+    /// How the author read the request, where it read it itself.
+    pub reading: Option<Reading>,
     /// How it came about.
     pub exchange: Exchange,
     /// Short words for the status line.
@@ -73,6 +76,12 @@ impl AuthorContext {
         Self { keys }
     }
 
+    /// The same context, whose authors tell this how many characters they have written so far.
+    #[must_use]
+    pub fn heard_by(&self, hear: impl Fn(u64) + Send + Sync + 'static) -> Self {
+        Self { keys: Keys { listener: Listener::new(hear), ..self.keys.clone() } }
+    }
+
     /// Does a job: one question, one ask.
     ///
     /// # Errors
@@ -89,7 +98,9 @@ impl AuthorContext {
         let author = author_of_job(&asking.settings, &self.keys, asking.attempt)
             .map_err(|error| unasked(vec![error.fault()]))?;
         match attempt(author.as_ref(), question).await {
-            Ok(Made { written, exchange }) => Ok(JobAnswer { remark: written.remark(), written, exchange }),
+            Ok(Made { written, reading, exchange }) => {
+                Ok(JobAnswer { remark: written.remark(), written, reading, exchange })
+            }
             Err(Refused { class, faults, text, retry_after_ms, exchange }) => {
                 Err(JobRefusal { class, faults, text, retry_after_ms, exchange: Some(exchange) })
             }

@@ -1,4 +1,4 @@
-//! Who answers the authoring questions, and one attempt at an answer.
+//! The authors that answer the questions, and one attempt at an answer.
 //!
 //! ```text
 //! Question ─► Author::ask ─► text ─► parse (prompts) ─► check (checks) ─► artifact + exchange
@@ -13,6 +13,7 @@
 pub mod author;
 pub mod offline;
 
+pub mod compiled;
 pub mod paths_by;
 
 pub mod cassette;
@@ -24,6 +25,7 @@ mod mutate;
 
 pub mod confusion;
 
+mod account;
 pub mod attempt;
 pub mod job;
 pub mod settings;

@@ -71,12 +71,13 @@ impl Author for Llm {
         let room = room(question, self.max_tokens);
         let mut request = chat_request(question, &prompt, style.image, room)?;
         request.grammar = grammar;
-        if self.dialect != Dialect::OpenAi {
+        if !matches!(self.dialect, Dialect::OpenAi | Dialect::Responses | Dialect::Console) {
             // Some models take turns by turns only; two in a row by the same speaker are one.
             request.turns = merged(request.turns);
         }
         let answer = self.client.ask(&request).await.map_err(|error| ask_error(&error))?;
         let answer = ChatAnswer { model: format!("{}:{}", self.dialect, answer.model), ..answer };
+        let without_picture = answer.without_picture;
         let mut said = said(answer, prompt, style);
         said.how.steps.extend(change);
         if room != self.max_tokens {
@@ -84,7 +85,7 @@ impl Author for Llm {
                 format!("up to {room} tokens were allowed, not {}: the answer before was cut off", self.max_tokens);
             said.how.steps.push(words);
         }
-        said.how.picture = picture_of(&request);
+        said.how.picture = if without_picture { None } else { picture_of(&request) };
         Ok(said)
     }
 
@@ -182,6 +183,7 @@ pub(crate) fn said(answer: ChatAnswer, prompt: Prompt, style: Style) -> Answer {
             rung: answer.rung.map(|rung| rung.name().to_owned()),
             steps: answer.steps,
             cached: answer.cached,
+            thought: answer.thought,
             estimated: answer.estimated,
             picture: None,
             limits: answer.limits,
@@ -192,8 +194,8 @@ pub(crate) fn said(answer: ChatAnswer, prompt: Prompt, style: Style) -> Answer {
 /// The client's error with the code that the orchestrator knows.
 pub(crate) fn ask_error(error: &ChatError) -> AskError {
     let (code, retry_after_ms) = match error {
-        ChatError::Unreachable { .. } => (FaultCode::TNet, None),
-        ChatError::Timeout { .. } => (FaultCode::TTimeout, None),
+        ChatError::Unreachable { .. } | ChatError::Broken { .. } => (FaultCode::TNet, None),
+        ChatError::Timeout { .. } | ChatError::Late { .. } => (FaultCode::TTimeout, None),
         ChatError::SlowDown { retry_after_ms, .. } => (FaultCode::T429, *retry_after_ms),
         ChatError::Server { retry_after_ms, .. } => (FaultCode::T5xx, *retry_after_ms),
         // A proxy's page in place of an answer passes like any other trouble of a server.

@@ -3,45 +3,69 @@
 use async_trait::async_trait;
 use socrates_model::job::Stage;
 use socrates_model::{FaultCode, Paths, Proposal, seeds};
-use socrates_prompts::Question;
+use socrates_prompts::{Mode, Question, Style};
 use socrates_solver::{Problem, Told};
 
-use crate::author::{Answer, AskError, Author};
+use crate::author::{Answer, AskError, Author, How};
 
 /// Setting of a job that says who writes the paths, and its words.
 const SETTING: &str = "paths_by";
 const MODEL: &str = "model";
+const ALONE: &str = "model_alone";
 const SOLVER: &str = "solver";
 
 /// Name of the solver, as artifacts spell it.
 pub const NAME: &str = "solver/1";
 
-/// Whether the settings of a job have the solver write paths; the author itself does without the setting.
+/// Refused answers of a model after which the solver writes its paths.
+const REFUSALS: u32 = 2;
+
+/// From which attempt on the solver writes paths by the settings of a job: from the first, after the model was refused twice, or never for the
+/// baseline of ablations and by the word `model_alone`.
 ///
 /// # Errors
 /// `J-REQUEST` for a word that means nobody.
-pub(crate) fn by_solver(settings: &std::collections::BTreeMap<String, String>) -> Result<bool, AskError> {
+pub(crate) fn solver_from(
+    settings: &std::collections::BTreeMap<String, String>,
+    style: &Style,
+) -> Result<Option<u32>, AskError> {
     match settings.get(SETTING).map(String::as_str) {
-        None | Some(MODEL) => Ok(false),
-        Some(SOLVER) => Ok(true),
+        None | Some(MODEL) => Ok((style.mode == Mode::Structured).then_some(REFUSALS + 1)),
+        Some(ALONE) => Ok(None),
+        Some(SOLVER) => Ok(Some(1)),
         Some(other) => {
-            let message = format!("`{SETTING}`: `{other}` is unknown; allowed: {MODEL}, {SOLVER}");
+            let message = format!("`{SETTING}`: `{other}` is unknown; allowed: {MODEL}, {ALONE}, {SOLVER}");
             Err(AskError::new(FaultCode::JRequest, message))
         }
     }
 }
 
-/// Asks the inner author for everything but paths.
+/// Asks the inner author for everything but paths, and for those until the solver's turn comes.
 pub(crate) struct BySolver {
     pub(crate) inner: Box<dyn Author>,
+    /// Number of this attempt, from 1.
+    pub(crate) asked: u32,
+    /// First attempt of the solver.
+    pub(crate) from: u32,
+}
+
+impl BySolver {
+    /// Whether the solver answers: from its attempt on, and as the fallback only where an answer was refused.
+    fn answers(&self, question: &Question) -> bool {
+        question.stage == Stage::Paths && self.asked >= self.from && (self.from == 1 || !question.feedback.is_empty())
+    }
 }
 
 #[async_trait]
 impl Author for BySolver {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         match &question.proposal {
-            Some(proposal) if question.stage == Stage::Paths => {
-                Ok(Answer { text: answer(question, proposal), model: NAME.to_owned(), ..Answer::default() })
+            Some(proposal) if self.answers(question) => {
+                let mut how = How::default();
+                if self.from > 1 {
+                    how.steps.push(format!("{REFUSALS} answers of the model were refused: the solver wrote the paths"));
+                }
+                Ok(Answer { text: answer(question, proposal), model: NAME.to_owned(), how, ..Answer::default() })
             }
             Some(_) | None => self.inner.ask(question).await,
         }
@@ -80,9 +104,24 @@ mod tests {
     use crate::attempt::{Written, attempt};
     use crate::testing::{Scripted, question};
 
+    fn solver(asked: u32, from: u32) -> BySolver {
+        BySolver { inner: Box::new(Scripted::says("no paths")), asked, from }
+    }
+
+    #[tokio::test]
+    async fn after_two_refusals_of_a_model_the_solver_writes_the_paths_and_says_so() {
+        let mut ask = question(Stage::Paths);
+        assert!(attempt(&solver(3, 3), &ask).await.is_err(), "nothing was refused: the third try is the model's");
+        ask.feedback = vec![socrates_model::Fault::new(FaultCode::GDisc, "robot", "jumps")];
+        assert!(attempt(&solver(2, 3), &ask).await.is_err());
+        let made = attempt(&solver(3, 3), &ask).await.unwrap();
+        assert_eq!(made.exchange.model, NAME);
+        assert!(made.exchange.how.steps[0].contains("2 answers of the model were refused"), "{:?}", made.exchange.how);
+    }
+
     #[tokio::test]
     async fn paths_come_from_geometry_and_everything_else_from_the_author() {
-        let author = BySolver { inner: Box::new(Scripted::says("no paths")) };
+        let author = solver(1, 1);
         let made = attempt(&author, &question(Stage::Paths)).await.unwrap();
         let Written::Paths(paths) = &made.written else { panic!("{made:?}") };
         assert_eq!((paths.author.clone(), paths.encounters.len()), (NAME.into(), 2));
@@ -91,7 +130,7 @@ mod tests {
 
     #[tokio::test]
     async fn what_does_not_fit_is_said_with_its_numbers() {
-        let author = BySolver { inner: Box::new(Scripted::says("no paths")) };
+        let author = solver(1, 1);
         let mut ask = question(Stage::Paths);
         ask.location.graph = ask.location.graph.edited(|_, edges| edges.retain(|edge| edge.from.as_str() != "c"));
         let refused = attempt(&author, &ask).await.unwrap_err();
@@ -102,8 +141,11 @@ mod tests {
     #[test]
     fn a_word_that_means_nobody_is_named() {
         let settings = |word: &str| BTreeMap::from([(SETTING.to_owned(), word.to_owned())]);
-        assert_eq!(by_solver(&settings("solver")), Ok(true));
-        assert_eq!(by_solver(&BTreeMap::new()), Ok(false));
-        assert_eq!(by_solver(&settings("oracle")).unwrap_err().code, FaultCode::JRequest);
+        let from = |settings: &BTreeMap<String, String>| solver_from(settings, &Style::default());
+        assert_eq!(from(&settings("solver")), Ok(Some(1)));
+        assert_eq!((from(&BTreeMap::new()), from(&settings("model_alone"))), (Ok(Some(3)), Ok(None)));
+        assert_eq!(from(&settings("oracle")).unwrap_err().code, FaultCode::JRequest);
+        let naive = Style { mode: Mode::Naive, ..Style::default() };
+        assert_eq!(solver_from(&BTreeMap::new(), &naive), Ok(None), "a baseline has no net");
     }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use async_trait::async_trait;
 use socrates_llm::models::Has;
 use socrates_llm::probe::Probe;
-use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learned, Rung};
+use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learned, Listener, Rung};
 use socrates_model::ids::BadId;
 use socrates_model::request::ServerKind;
 use socrates_model::{AuthorSpec, FaultCode};
@@ -19,8 +19,8 @@ use crate::fault_model::FaultRates;
 use crate::faulty::FaultyAuthor;
 use crate::llm::{Llm, MAX_TOKENS, ask_error};
 use crate::offline::Offline;
-use crate::paths_by;
 use crate::variants::BySeed;
+use crate::{compiled, paths_by};
 
 /// What a process knows of one kind of server.
 #[derive(Debug, Clone, Default)]
@@ -41,8 +41,14 @@ pub struct Keys {
     pub auto_model: Option<String>,
     /// The only rung of enforcement to use; without one, what the server takes.
     pub rung: Option<Rung>,
-    /// Longest time of a call; default 90 s.
-    pub timeout: Option<Duration>,
+    /// How long a server may be silent; default 5 min.
+    pub silence: Option<Duration>,
+    /// Longest time of a call; default 30 min.
+    pub longest: Option<Duration>,
+    /// Whether answers are asked for in one piece, and not in parts that can be heard while they come.
+    pub in_one_piece: bool,
+    /// Hears how far an answer is.
+    pub listener: Listener,
     /// Most tokens of an answer; default 16 000.
     pub max_tokens: Option<u32>,
     /// Whether plain HTTP may go to other machines.
@@ -92,12 +98,14 @@ fn read(setting: &str) -> Result<AuthorSpec, AskError> {
 const fn dialect(kind: ServerKind) -> Dialect {
     match kind {
         ServerKind::OpenAi => Dialect::OpenAi,
+        ServerKind::Responses => Dialect::Responses,
         ServerKind::Anthropic => Dialect::Anthropic,
         ServerKind::Gemini => Dialect::Gemini,
         ServerKind::Vllm => Dialect::Vllm,
         ServerKind::Ollama => Dialect::Ollama,
         ServerKind::LlamaCpp => Dialect::LlamaCpp,
         ServerKind::LmStudio => Dialect::LmStudio,
+        ServerKind::Console => Dialect::Console,
     }
 }
 
@@ -118,9 +126,15 @@ pub fn author_of_job(
     } else {
         Box::new(Told { inner: author, telling: style.feedback })
     };
+    // Rules act on what their behaviors are told.
+    let compiles = compiled::by_proposal(settings)? && author.name() != socrates_offline::NAME;
+    let author: Box<dyn Author> = if compiles { Box::new(compiled::Compiled { inner: author }) } else { author };
     // Rules have the solver anyway.
-    let solver = paths_by::by_solver(settings)? && author.name() != socrates_offline::NAME;
-    let author: Box<dyn Author> = if solver { Box::new(paths_by::BySolver { inner: author }) } else { author };
+    let from = paths_by::solver_from(settings, &style)?.filter(|_| author.name() != socrates_offline::NAME);
+    let author: Box<dyn Author> = match from {
+        Some(from) => Box::new(paths_by::BySolver { inner: author, asked: attempt, from }),
+        None => author,
+    };
     // A model writes several in one answer; rules are asked with as many seeds.
     let author: Box<dyn Author> = if style.variants > 1 && author.name() == socrates_offline::NAME {
         Box::new(BySeed { inner: author, count: style.variants })
@@ -221,9 +235,10 @@ fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, As
     config.rung = keys.rung;
     config.learned = keys.learned.clone();
     config.plain_http = keys.plain_http;
-    if let Some(timeout) = keys.timeout {
-        config.timeout = timeout;
-    }
+    config.silence = keys.silence.unwrap_or(config.silence);
+    config.longest = keys.longest.unwrap_or(config.longest);
+    config.stream = !keys.in_one_piece;
+    config.listener = keys.listener.clone();
     Ok(config)
 }
 
@@ -249,7 +264,7 @@ mod tests {
 
     #[test]
     fn each_vendor_wants_its_own_key_and_local_servers_none() {
-        for dialect in [Dialect::OpenAi, Dialect::Anthropic, Dialect::Gemini] {
+        for dialect in [Dialect::OpenAi, Dialect::Responses, Dialect::Anthropic, Dialect::Gemini] {
             let setting = format!("{dialect}:m");
             assert_eq!(name(&setting, &Keys::default()), Err(FaultCode::TAuth));
             assert_eq!(name(&setting, &keyed(dialect)), Ok(setting.clone()));

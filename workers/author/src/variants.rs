@@ -12,9 +12,9 @@ use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_model::seeds::derive_seed;
 use socrates_model::{Fault, Proposal};
-use socrates_prompts::{Question, json as text_json, parse_proposal};
+use socrates_prompts::{Question, json as text_json};
 
-use crate::attempt::{Written, check};
+use crate::attempt::{Written, checked, read as read_one};
 use crate::author::{Answer, AskError, Author};
 
 /// Member of an answer that holds several proposals.
@@ -49,10 +49,9 @@ pub fn read(text: &str, question: &Question) -> Result<Vec<Variant>, Vec<Fault>>
 }
 
 fn variant(text: String, question: &Question) -> Variant {
-    match parse_proposal(&text, question) {
-        Ok(proposal) => {
-            let written = Written::Proposal(proposal);
-            let faults = check(&written, question);
+    match read_one(&text, question) {
+        Ok((written, account)) => {
+            let (_reading, faults) = checked(&written, account.as_ref(), question);
             let Written::Proposal(proposal) = written else { return Variant { proposal: None, text, faults } };
             Variant { proposal: Some(proposal), text, faults }
         }
@@ -65,7 +64,7 @@ fn variant(text: String, question: &Question) -> Variant {
 pub fn best(variants: &[Variant]) -> usize {
     let weight = |variant: &Variant| {
         let hard = hard(&variant.faults).len();
-        // Who cannot be read is not held against one fault only: nothing of it could be checked.
+        // A proposal that cannot be read has more than one fault: nothing of it could be checked.
         (variant.proposal.is_none(), hard, variant.faults.len() - hard)
     };
     let places = variants.iter().enumerate().min_by_key(|(place, variant)| (weight(variant), *place));
@@ -83,7 +82,7 @@ pub(crate) struct BySeed {
 impl Author for BySeed {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let mut first = self.inner.ask(question).await?;
-        // Who is shown a refused answer mends that one.
+        // An author that is shown a refused answer mends that one.
         if question.stage != Stage::Proposal || question.refused.is_some() {
             return Ok(first);
         }

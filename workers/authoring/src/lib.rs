@@ -43,7 +43,7 @@ async fn serve(context: &AuthorContext, stage: Stage, job: &Job) -> Result<Done,
     };
     let asking = Asking { settings: spec.settings.clone(), attempt: job.grant().attempt };
     tracing::debug!(job = %spec.key, attempt = asking.attempt, "author asked");
-    match context.answer(&question, &asking).await {
+    match context.heard_by(job.hears()).answer(&question, &asking).await {
         Ok(answer) => report::done(answer),
         Err(refusal) => Err(report::failure(refusal)),
     }

@@ -13,7 +13,11 @@ pub(crate) fn done(answer: JobAnswer) -> Result<Done, Failure> {
         Written::Behaviors(behaviors) => Output::json(Role::Behaviors, behaviors)?,
     };
     let exchange = Output::json(Role::Exchange, &answer.exchange)?;
-    let mut done = Done::with(vec![artifact, exchange]).remark(answer.remark);
+    let mut outputs = vec![artifact, exchange];
+    if let Some(reading) = &answer.reading {
+        outputs.push(Output::json(Role::Reading, reading)?);
+    }
+    let mut done = Done::with(outputs).remark(answer.remark);
     done.tokens = answer.exchange.tokens;
     done.rates = rates(&answer.exchange);
     Ok(done)

@@ -31,7 +31,8 @@ macro_rules! stages {
 stages! {
     /// From a request and its reading to a scenario in detail.
     ///
-    /// Inputs by role: `request`, `reading`, `location`. Outputs: `proposal`, and `exchange` for provenance.
+    /// Inputs by role: `request`, `reading`, `location`. Outputs: `proposal`, `exchange` for provenance, and `reading` where the author read the
+    /// request itself.
     ProposalStage Proposal;
     /// From a proposal and the map to node sequences and encounters.
     ///

@@ -64,7 +64,7 @@ async fn carried_out<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant: Grant)
     tracing::info!("the attempt begins");
     let end = tokio::select! {
         () = entry.cancel.stopped() => End::Stopped,
-        worked = work(&worker, stage, &grant, &entry.cancel, &entry.progress) => worked,
+        worked = work(&worker, stage, &grant, &entry.cancel, &entry.characters) => worked,
     };
     let worked = match end {
         End::Worked(worked) => worked,
@@ -125,7 +125,7 @@ async fn work<S: Stage>(
     stage: Arc<S>,
     grant: &Grant,
     cancel: &Cancel,
-    progress: &Arc<std::sync::atomic::AtomicU8>,
+    characters: &Arc<std::sync::atomic::AtomicU64>,
 ) -> End {
     let inputs = match inputs(worker, grant).await {
         Ok(inputs) => inputs,
@@ -137,7 +137,7 @@ async fn work<S: Stage>(
         inputs,
         refused,
         cancel: cancel.clone(),
-        progress: Arc::clone(progress),
+        characters: Arc::clone(characters),
         live: worker.config.live.as_ref().map_or_else(|| Arc::clone(&worker.bus), Arc::clone),
     };
     // A set of one: dropping it stops the task.

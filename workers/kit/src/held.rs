@@ -1,7 +1,7 @@
 //! Attempts that this worker holds, and the lease clock of each.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -31,8 +31,8 @@ const REMEMBERED: usize = 512;
 pub(crate) struct Entry {
     /// Its cancel token.
     pub(crate) cancel: Cancel,
-    /// Its progress, percent.
-    pub(crate) progress: Arc<AtomicU8>,
+    /// Characters that its author has written so far.
+    pub(crate) characters: Arc<AtomicU64>,
     /// Where it stands in its trace.
     pub(crate) trace: Option<TraceContext>,
     lease: Duration,
@@ -67,7 +67,7 @@ impl Held {
         }
         let entry = Entry {
             cancel: Cancel::new(),
-            progress: Arc::default(),
+            characters: Arc::default(),
             trace: grant.traceparent,
             lease: Duration::from_millis(grant.lease_ms),
             last_ok: Instant::now(),
@@ -162,7 +162,7 @@ impl Held {
             key: slot.0.clone(),
             attempt: slot.1,
             fence: slot.2,
-            progress: entry.progress.load(Ordering::Relaxed),
+            characters: entry.characters.load(Ordering::Relaxed),
         };
         self.table().entries.iter().map(line).collect()
     }

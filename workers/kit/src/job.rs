@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::de::DeserializeOwned;
 use socrates_link::{Bus, MemoryBus};
@@ -19,7 +19,7 @@ pub struct Job {
     pub(crate) inputs: BTreeMap<Role, Vec<u8>>,
     pub(crate) refused: Option<String>,
     pub(crate) cancel: Cancel,
-    pub(crate) progress: Arc<AtomicU8>,
+    pub(crate) characters: Arc<AtomicU64>,
     pub(crate) live: Arc<dyn Bus>,
 }
 
@@ -36,7 +36,7 @@ impl Job {
             inputs,
             refused: None,
             cancel: Cancel::new(),
-            progress: Arc::default(),
+            characters: Arc::default(),
             live: Arc::new(MemoryBus::new()),
         }
     }
@@ -121,9 +121,10 @@ impl Job {
         &self.cancel
     }
 
-    /// Says how far the job is, 0 to 100; shown in the next beat.
-    pub fn progress(&self, percent: u8) {
-        self.progress.store(percent.min(100), Ordering::Relaxed);
+    /// Says how many characters an author has written so far; told with the next beat.
+    pub fn hears(&self) -> impl Fn(u64) + Send + Sync + use<> {
+        let characters = Arc::clone(&self.characters);
+        move |count| characters.store(count, Ordering::Relaxed)
     }
 
     /// The bus for live streams; never the one that carries jobs where the worker has two.

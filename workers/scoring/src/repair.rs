@@ -3,10 +3,10 @@
 use socrates_model::job::Stage;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::{Repair, Standing};
-use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict, Where};
+use socrates_model::{Action, AgentId, Clause, Fault, FaultCode, Predicate, Trigger, Verdict, Where};
 
 use crate::evidence::Evidence;
-use crate::fidelity::{Finding, Judged};
+use crate::fidelity::{Finding, Judged, Missed};
 use crate::score::is_meeting;
 use crate::tracks::TrackFault;
 
@@ -38,9 +38,13 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
     if faults.is_empty() {
         for (clause, finding) in judged.deciding() {
             if matches!(finding.standing, Standing::NotTriggered | Standing::Fails) {
-                faults.push(fault_of(clause, finding));
+                faults.push(fault_of(clause, finding, has_rule(evidence, clause)));
             }
         }
+    }
+    // Whoever acts before their reason is not where the others expect them: what else was missed may well be of that.
+    if faults.iter().any(|(_, fault)| fault.code == FaultCode::DEarly) {
+        faults.retain(|(_, fault)| fault.code == FaultCode::DEarly);
     }
     // One stage is done again at a time, the earliest: what depends on it is made anew anyway.
     let stage = faults.iter().map(|(stage, _)| *stage).min()?;
@@ -55,19 +59,83 @@ pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<R
         .then(|| Repair { stage: Stage::Paths, faults: vec![Fault::new(FaultCode::DPen, *agent, fault.to_string())] })
 }
 
-/// Code, stage and message of a clause that was missed.
-fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
-    let (code, stage) = match &clause.predicate {
+/// Whether whoever is to do what a clause tests has a rule for it: then a reason that came and nothing done is for who writes rules.
+fn has_rule(evidence: &Evidence<'_>, clause: &Clause) -> bool {
+    let follower = if let Predicate::Follows { follower: AgentId::Human(human), .. } = &clause.predicate {
+        Some(*human)
+    } else {
+        None
+    };
+    let human = follower.or_else(|| clause.predicate.human());
+    let human = human.and_then(|human| evidence.proposal.and_then(|proposal| proposal.human(human)));
+    human.is_some_and(|human| human.rules.iter().any(|rule| does(&clause.predicate, &rule.act)))
+}
+
+/// Whether an action is what a clause tests.
+const fn does(predicate: &Predicate, act: &Action) -> bool {
+    matches!(
+        (predicate, act),
+        (Predicate::Blocks { .. }, Action::Block)
+            | (Predicate::Looks { .. }, Action::LookAtRobot | Action::LookAt(_))
+            | (Predicate::RunsAway { .. }, Action::RunAway)
+            | (Predicate::GivesWay { .. }, Action::GiveWay)
+            | (Predicate::MakesRoom { .. }, Action::MakeRoom)
+            | (Predicate::Follows { .. }, Action::FollowRobot | Action::FollowHuman(_))
+    )
+}
+
+/// Code, stage and message of a clause that was missed; `ruled` tells whether its people have a rule for what it tests.
+fn fault_of(clause: &Clause, finding: &Finding, ruled: bool) -> (Stage, Fault) {
+    let (code, stage) = finding
+        .missed
+        .as_ref()
+        .and_then(elsewhere)
+        .map_or_else(|| by_predicate(clause, finding, ruled), |stage| (FaultCode::DNoTrig, stage));
+    let at = clause.predicate.human().map_or_else(|| Where::key(&clause.id), Where::agent);
+    let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
+    let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
+    let message = format!(
+        "clause {} (\"{}\") {state}{when}, margin {:.2}: {}",
+        clause.id, clause.text, finding.margin, finding.evidence
+    );
+    (stage, Fault::new(code, at, message))
+}
+
+/// The stage that can bring about a trigger that never held, where that is not the one which writes who reacts to what: the robot's script,
+/// what others do, and times are the proposal's, places of people the paths'.
+fn elsewhere(missed: &Missed) -> Option<Stage> {
+    match &missed.trigger {
+        // Near enough and not before their eyes: they walk the other way, or elsewhere.
+        Trigger::RobotVisible(m) | Trigger::RobotBlocking(m) if missed.nearest_m <= *m => Some(Stage::Paths),
+        Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::RobotStopped
+        | Trigger::StoppedFor(_)
+        | Trigger::AfterSecs(_)
+        | Trigger::Did(..)
+        | Trigger::Done(_) => Some(Stage::Proposal),
+        Trigger::AtEncounter | Trigger::GoalReached | Trigger::RobotPassed => Some(Stage::Paths),
+        Trigger::Always
+        | Trigger::RobotVisible(_)
+        | Trigger::RobotNear(_)
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving => None,
+    }
+}
+
+/// Code and stage of a clause by what it tests.
+fn by_predicate(clause: &Clause, finding: &Finding, ruled: bool) -> (FaultCode, Stage) {
+    match &clause.predicate {
         _ if finding.early => (FaultCode::DEarly, Stage::Behaviors),
         predicate if is_meeting(predicate) => (FaultCode::DNoMeet, Stage::Paths),
-        // Who was never near could not act: that is for the paths.
+        // A human who was never near could not act: that is for the paths.
         Predicate::Blocks { .. }
         | Predicate::Looks { .. }
         | Predicate::RunsAway { .. }
         | Predicate::GivesWay { .. }
         | Predicate::MakesRoom { .. }
         | Predicate::Follows { .. }
-            if finding.standing == Standing::NotTriggered =>
+            if finding.standing == Standing::NotTriggered && (finding.missed.is_some() || !ruled) =>
         {
             (FaultCode::DNoMeet, Stage::Paths)
         }
@@ -127,13 +195,5 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::RobotJoins { .. }
         | Predicate::RobotLeavesGroup { .. }
         | Predicate::RobotObeys { .. } => (FaultCode::DSetup, Stage::Paths),
-    };
-    let at = clause.predicate.human().map_or_else(|| Where::key(&clause.id), Where::agent);
-    let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
-    let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
-    let message = format!(
-        "clause {} (\"{}\") {state}{when}, margin {:.2}: {}",
-        clause.id, clause.text, finding.margin, finding.evidence
-    );
-    (stage, Fault::new(code, at, message))
+    }
 }

@@ -252,7 +252,7 @@ fn a_leaf_without_its_motion_is_no_reaction() {
 }
 
 #[test]
-fn a_reaction_whose_trigger_never_comes_goes_back_to_the_behaviors() {
+fn a_reaction_whose_trigger_never_comes_goes_to_whoever_can_bring_it_about() {
     let mut case = frontal();
     let when = vec![Trigger::RobotSays(Gesture::ExcuseMe)];
     case.plan.expected_events =
@@ -260,7 +260,25 @@ fn a_reaction_whose_trigger_never_comes_goes_back_to_the_behaviors() {
     let run = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
     let report = case.judge(&run);
     assert_eq!(report.verdict, Verdict::NotTriggered);
-    assert_eq!(report.repair.unwrap().faults[0].code, FaultCode::DNoTrig);
+    let repair = report.repair.unwrap();
+    assert_eq!((repair.stage, repair.faults[0].code), (Stage::Proposal, FaultCode::DNoTrig));
+    let told = repair.faults[0].message.to_string();
+    assert!(told.contains("never says EXCUSE_ME: its script has no such line"), "{told}");
+
+    // With a line that waits for somebody in the way, the message says how long that was at the longest.
+    let line = RobotRule { when: RobotWhen::Blocked(2.0), act: RobotDo::Say(Gesture::ExcuseMe) };
+    case.plan.robot.script = vec![line];
+    let told = case.judge(&run).repair.unwrap().faults[0].message.to_string();
+    assert!(told.contains("when it was blocked for 2 s (0.") && told.contains("s at the longest"), "{told}");
+
+    // Somebody whom the robot does not come near enough to is for those who say how near that is.
+    let when = vec![Trigger::RobotNear(0.2)];
+    case.plan.expected_events =
+        vec![must("c1", Predicate::Reacts { human: H1, when, act: Action::GiveWay, within_s: 2.0 })];
+    let repair = case.judge(&run).repair.unwrap();
+    assert_eq!(repair.stage, Stage::Behaviors);
+    let told = repair.faults[0].message.to_string();
+    assert!(told.contains("comes no nearer than 1.0 m"), "{told}");
 }
 
 #[test]
@@ -394,7 +412,7 @@ fn a_place_that_is_named_is_judged_by_its_nodes() {
         report.clauses.iter().find(|clause| clause.id == "c5").unwrap().standing
     };
     assert_eq!(at("c"), Standing::Holds);
-    // Who stays inside is met before the door.
+    // A human who stays inside is met before the door.
     assert_eq!(at("d"), Standing::Holds);
     // Nobody is met there, and nobody comes out of it.
     assert_eq!(at("a"), Standing::Fails);

@@ -124,7 +124,7 @@ fn of_workers() -> Vec<Kind> {
     };
     let acquire =
         Acquire { req_id, instance: instance.clone(), stages: vec![Stage::Paths], credits: 2, code_version: version };
-    let held = Held { key: key(Stage::Paths, Item::Whole), attempt: 1, fence: 40, progress: 50 };
+    let held = Held { key: key(Stage::Paths, Item::Whole), attempt: 1, fence: 40, characters: 0 };
     let verdicts = vec![
         (key(Stage::Paths, Item::Whole), 1, BeatVerdict::Ok),
         (key(Stage::Behaviors, Item::Whole), 2, BeatVerdict::Cancel),
@@ -159,6 +159,7 @@ fn of_clients() -> Vec<Kind> {
         state: JobState::Succeeded,
         attempts: 2,
         wall_ms: 12,
+        characters: 0,
         remark: "34 m".to_owned(),
         faults: vec![fault()],
         artifacts: vec![artifact()],

@@ -117,6 +117,7 @@ fault_codes! {
     "P-CAP" PCap Semantic Remedy::AskAgain, false, "a behavior cannot be simulated";
     "P-OTHER" POther Semantic Remedy::AskAgain, false, "a behavior depends on another human in a way that cannot be simulated";
     "P-PLACE" PPlace Semantic Remedy::AskAgain, false, "the map has no such place";
+    "P-ACCOUNT" PAccount Semantic Remedy::AskAgain, false, "the reading of the request leaves something out, or says what is not there";
     "P-LABEL" PLabel Semantic Remedy::AskAgain, true, "the description names node ids";
     "P-ROUGH" PRough Semantic Remedy::AskAgain, false, "a wish of the request is missing in the proposal";
     "P-ROBOT" PRobot Semantic Remedy::AskAgain, false, "the robot's part is missing or not possible";

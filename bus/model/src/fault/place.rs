@@ -1,6 +1,7 @@
 //! Where a fault is.
 
 use std::fmt;
+use std::ops::Range;
 
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -19,6 +20,29 @@ pub struct Span {
     pub from: u32,
     /// The character behind the last one.
     pub to: u32,
+}
+
+impl Span {
+    /// Bytes of a text as a span; none where they cut a character.
+    #[must_use]
+    pub fn of(text: &str, bytes: &Range<usize>) -> Option<Self> {
+        let chars = |end: usize| u32::try_from(text.get(..end)?.chars().count()).ok();
+        Some(Self { from: chars(bytes.start)?, to: chars(bytes.end)? })
+    }
+
+    /// The bytes of a text that it spans; none where the text is shorter.
+    #[must_use]
+    pub fn bytes(self, text: &str) -> Option<Range<usize>> {
+        let ends = || text.char_indices().map(|(at, _)| at).chain([text.len()]);
+        let at = |place: u32| ends().nth(usize::try_from(place).ok()?);
+        Some(at(self.from)?..at(self.to)?)
+    }
+
+    /// Whether the two have a character in common.
+    #[must_use]
+    pub const fn overlaps(self, other: Self) -> bool {
+        self.from < other.to && other.from < self.to
+    }
 }
 
 /// Where a fault is: as much of it as is known. Printed by one [`fmt::Display`], for people and authors:

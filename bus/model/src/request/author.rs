@@ -14,6 +14,8 @@ use crate::ids::BadId;
 pub enum ServerKind {
     /// Chat Completions of the vendor, and servers that do the same.
     OpenAi,
+    /// Responses of the same vendor, and servers that do the same.
+    Responses,
     /// Anthropic Messages.
     Anthropic,
     /// Gemini generateContent.
@@ -26,24 +28,37 @@ pub enum ServerKind {
     LlamaCpp,
     /// LM Studio.
     LmStudio,
+    /// A person at the page of `socrates author console`.
+    Console,
 }
 
 impl ServerKind {
     /// Every kind.
-    pub const ALL: [Self; 7] =
-        [Self::OpenAi, Self::Anthropic, Self::Gemini, Self::Vllm, Self::Ollama, Self::LlamaCpp, Self::LmStudio];
+    pub const ALL: [Self; 9] = [
+        Self::OpenAi,
+        Self::Responses,
+        Self::Anthropic,
+        Self::Gemini,
+        Self::Vllm,
+        Self::Ollama,
+        Self::LlamaCpp,
+        Self::LmStudio,
+        Self::Console,
+    ];
 
     /// The name as requests and settings spell it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::OpenAi => "openai",
+            Self::Responses => "responses",
             Self::Anthropic => "anthropic",
             Self::Gemini => "gemini",
             Self::Vllm => "vllm",
             Self::Ollama => "ollama",
             Self::LlamaCpp => "llamacpp",
             Self::LmStudio => "lmstudio",
+            Self::Console => "console",
         }
     }
 }
@@ -70,9 +85,20 @@ pub enum AuthorSpec {
 
 impl AuthorSpec {
     /// What is taken, for messages.
-    pub const ALLOWED: &'static str = "auto, offline, openai:<model>, anthropic:<model>, gemini:<model>, vllm:<model>, \
-                                       ollama:<model>, llamacpp:<model>, lmstudio:<model>, cassette:<folder>, \
+    pub const ALLOWED: &'static str = "auto, offline, openai:<model>, responses:<model>, anthropic:<model>, \
+                                       gemini:<model>, vllm:<model>, ollama:<model>, llamacpp:<model>, \
+                                       lmstudio:<model>, console:<name>, cassette:<folder>, \
                                        record:<folder>=<author>, replay:<folder>=<author>";
+
+    /// Whether answers come from a language model, live or recorded. Not of [`AuthorSpec::Auto`], which is nobody yet.
+    #[must_use]
+    pub fn is_model(&self) -> bool {
+        match self {
+            Self::Auto | Self::Offline => false,
+            Self::Server(..) | Self::Cassette(_) => true,
+            Self::Record(_, inner) | Self::Replay(_, inner) => inner.is_model(),
+        }
+    }
 
     /// The server that is asked, with its model; nothing for rules and recordings.
     #[must_use]

@@ -448,9 +448,11 @@ fn cassettes(kit: &Kit) -> Vec<Sample> {
         model: "model-1".to_owned(),
         tokens: (12, 7),
         cached: 0,
+        thought: 0,
         estimated: false,
         rung: None,
         steps: Vec::new(),
+        without_picture: false,
         limits: None,
     };
     // Kept and read back, so that the sample has the form that this version writes.

@@ -1,5 +1,6 @@
 //! The command line, word by word: a file per verb or group of verbs, each with its own options.
 
+mod author;
 mod bt;
 mod bundle;
 mod cluster;
@@ -150,6 +151,8 @@ pub(crate) enum Verb {
     Bt(bt::Bt),
     /// Check, draw and generate locations.
     Map(map::Map),
+    /// Answer in the place of a language model.
+    Author(author::Author),
     /// Measure authors: how often scenarios are right at first, after asking again, and in the run.
     Evaluate(evaluate::Evaluate),
     /// Try retry policies on injected faults, in virtual time or on real processes: what is lost, doubled, repeated, and what it costs.
@@ -179,6 +182,7 @@ impl Verb {
         matches!(self, Self::Worker(cluster::Worker { tied: true, .. }))
             || matches!(self, Self::Orchestrator(cluster::Up { tied: true, .. }))
             || matches!(self, Self::View(view::View { tied: true, .. }))
+            || matches!(self, Self::Author(author) if author.is_tied())
             || matches!(self, Self::Play(_))
     }
 
@@ -211,6 +215,7 @@ impl Verb {
             Self::Config(verb) => verb.act(talk, config),
             Self::Bt(verb) => verb.act(talk),
             Self::Map(verb) => verb.act(talk),
+            Self::Author(verb) => verb.act(talk).await,
             Self::Evaluate(verb) => verb.act(talk, config).await,
             Self::Experiment(verb) => verb.act(talk, config).await,
             Self::Library(verb) => verb.act(talk, config).await,

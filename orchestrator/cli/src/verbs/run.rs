@@ -81,8 +81,8 @@ pub(crate) struct Options {
     /// Let variants repeat one another: take the seeds in turn instead of choosing different scenarios.
     #[arg(long)]
     repeats: bool,
-    /// Author: `auto`, `offline`, `openai:MODEL`, `anthropic:MODEL`, `gemini:MODEL`, `vllm:`, `ollama:`, `llamacpp:` or
-    /// `lmstudio:MODEL`, `cassette:FOLDER`, `record:FOLDER=AUTHOR`, `replay:FOLDER=AUTHOR`; wins over the request.
+    /// Author: `auto`, `offline`, `openai:MODEL`, `responses:MODEL`, `anthropic:MODEL`, `gemini:MODEL`, `vllm:`, `ollama:`, `llamacpp:`
+    /// or `lmstudio:MODEL`, `console:NAME`, `cassette:FOLDER`, `record:FOLDER=AUTHOR`, `replay:FOLDER=AUTHOR`; wins over the request.
     #[arg(long)]
     author: Option<AuthorSpec>,
     /// Pace of the simulation: `max`, or simulated seconds per second; default `max`, 1 with `--view`.

@@ -111,7 +111,7 @@ pub(super) fn answer(bytes: &[u8], call: &Call<'_>) -> Result<ChatAnswer, ChatEr
     let usage = message.usage.map(|counted| {
         let cached = counted.cache_read_input_tokens.unwrap_or(0);
         let written = counted.cache_creation_input_tokens.unwrap_or(0);
-        Usage { input: counted.input_tokens + cached + written, cached, output: counted.output_tokens }
+        Usage { input: counted.input_tokens + cached + written, cached, output: counted.output_tokens, thought: 0 }
     });
     Ok(call.told(called.map_or(said, Value::to_string), cut, message.model, usage))
 }

@@ -4,7 +4,7 @@ use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
-use super::{Call, Usage, refused, unreadable};
+use super::{Call, Details, Usage, refused, unreadable};
 use crate::chat::{ChatAnswer, Detail, Speaker};
 use crate::dialect::{Dialect, Rung};
 use crate::error::ChatError;
@@ -102,12 +102,8 @@ struct Counted {
     completion_tokens: u64,
     #[serde(default)]
     prompt_tokens_details: Option<Details>,
-}
-
-#[derive(Deserialize)]
-struct Details {
     #[serde(default)]
-    cached_tokens: Option<u64>,
+    completion_tokens_details: Option<Details>,
 }
 
 /// The answer in a successful body.
@@ -126,6 +122,7 @@ pub(super) fn answer(bytes: &[u8], call: &Call<'_>) -> Result<ChatAnswer, ChatEr
         input: counted.prompt_tokens,
         cached: counted.prompt_tokens_details.and_then(|details| details.cached_tokens).unwrap_or(0),
         output: counted.completion_tokens,
+        thought: counted.completion_tokens_details.and_then(|details| details.reasoning_tokens).unwrap_or(0),
     });
     Ok(call.told(said.content.unwrap_or_default(), cut, completion.model, usage))
 }

@@ -130,6 +130,7 @@ pub(super) fn answer(bytes: &[u8], call: &Call<'_>) -> Result<ChatAnswer, ChatEr
         cached: counted.cached_content_token_count,
         // What it thought is paid for like what it said.
         output: counted.candidates_token_count + counted.thoughts_token_count,
+        thought: counted.thoughts_token_count,
     });
     Ok(call.told(text, reason == "MAX_TOKENS", generated.model_version, usage))
 }

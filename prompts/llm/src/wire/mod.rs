@@ -3,8 +3,13 @@
 mod anthropic;
 mod chat;
 mod gemini;
+mod parts;
+mod responses;
+
+pub(crate) use parts::Parts;
 
 use reqwest::header::HeaderMap;
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::chat::{ChatAnswer, ChatRequest, Speaker};
@@ -16,18 +21,31 @@ use crate::{estimate, ordered, waits};
 /// Longest piece of a server's own words that is passed on, characters.
 const WORDS: usize = 300;
 
+/// What both formats of one vendor say of the tokens of one direction.
+#[derive(Deserialize)]
+struct Details {
+    /// Of the input: those that came from the cache.
+    #[serde(default)]
+    cached_tokens: Option<u64>,
+    /// Of the output: those of thinking.
+    #[serde(default)]
+    reasoning_tokens: Option<u64>,
+}
+
 /// A request in the words of one format.
 pub(crate) struct Call<'a> {
     pub(crate) request: &'a ChatRequest,
     pub(crate) config: &'a ClientConfig,
     pub(crate) rung: Rung,
+    /// Whether the answer is to come in parts.
+    pub(crate) stream: bool,
 }
 
 /// Name and value of the header that carries the key.
 pub(crate) fn key_header(config: &ClientConfig) -> (&'static str, String) {
     let key = config.key.secret();
     match config.dialect.wire() {
-        Wire::Chat => ("authorization", format!("Bearer {key}")),
+        Wire::Chat | Wire::Responses => ("authorization", format!("Bearer {key}")),
         Wire::Messages => ("x-api-key", key.to_owned()),
         Wire::Generate => ("x-goog-api-key", key.to_owned()),
     }
@@ -38,24 +56,30 @@ impl Call<'_> {
     pub(crate) fn path(&self) -> String {
         match self.config.dialect.wire() {
             Wire::Chat => "/chat/completions".to_owned(),
+            Wire::Responses => "/responses".to_owned(),
             Wire::Messages => "/v1/messages".to_owned(),
+            Wire::Generate if self.stream => {
+                format!("/v1beta/models/{}:streamGenerateContent?alt=sse", self.config.model)
+            }
             Wire::Generate => format!("/v1beta/models/{}:generateContent", self.config.model),
         }
     }
 
     /// The body of the request.
     pub(crate) fn body(&self) -> Value {
-        match self.config.dialect.wire() {
+        self.with_wish(match self.config.dialect.wire() {
             Wire::Chat => chat::body(self),
+            Wire::Responses => responses::body(self),
             Wire::Messages => anthropic::body(self),
             Wire::Generate => gemini::body(self),
-        }
+        })
     }
 
     /// The answer in a successful body.
     pub(crate) fn answer(&self, bytes: &[u8]) -> Result<ChatAnswer, ChatError> {
         match self.config.dialect.wire() {
             Wire::Chat => chat::answer(bytes, self),
+            Wire::Responses => responses::answer(bytes, self),
             Wire::Messages => anthropic::answer(bytes, self),
             Wire::Generate => gemini::answer(bytes, self),
         }
@@ -93,9 +117,11 @@ impl Call<'_> {
             model: model.filter(|name| !name.is_empty()).unwrap_or_else(|| self.config.model.clone()),
             tokens: (usage.input, usage.output),
             cached: usage.cached,
+            thought: usage.thought,
             estimated,
             rung: Some(self.rung),
             steps: Vec::new(),
+            without_picture: false,
             limits: None,
         }
     }
@@ -108,7 +134,10 @@ struct Usage {
     input: u64,
     /// Part of the input that came from the server's cache.
     cached: u64,
+    /// All of the output, thoughts included.
     output: u64,
+    /// Part of the output that was thinking.
+    thought: u64,
 }
 
 fn unreadable(why: impl Into<String>) -> ChatError {
@@ -139,9 +168,9 @@ pub(crate) fn complaint(status: u16, bytes: &[u8], headers: &HeaderMap, config: 
         402 => ChatError::Key { status, why },
         429 | 529 if should_retry != Some("false") => ChatError::SlowDown { status, retry_after_ms, why },
         408 | 409 | 425 | 500..=599 if should_retry != Some("false") => {
-            ChatError::Server { status, retry_after_ms, why }
+            ChatError::Server { status, retry_after_ms, to: objection(&error, &why, &config.model), why }
         }
-        _ if should_retry == Some("true") => ChatError::Server { status, retry_after_ms, why },
+        _ if should_retry == Some("true") => ChatError::Server { status, retry_after_ms, to: Objection::Unsaid, why },
         _ => ChatError::Rejected { status, to: objection(&error, &why, &config.model), why },
     }
 }
@@ -159,17 +188,28 @@ const FORM: [&str; 9] = [
     "response format",
 ];
 
+/// Words by which they name a picture.
+const PICTURE: [&str; 6] = ["image", "picture", "vision", "multimodal", "multi-modal", "mmproj"];
+
 /// What an error in a body objects to: its code and its parameter where it has them, else the server's sentence, which is
-/// all that most servers give.
+/// all that most servers give. A sentence may name more than one thing: the picture is named by few words, the form by many.
 fn objection(error: &Value, why: &str, model: &str) -> Objection {
     let word = |key: &str| error.get(key).and_then(Value::as_str).unwrap_or_default().to_lowercase();
-    let of_form = |text: &str| FORM.iter().any(|word| text.contains(word));
-    let why = why.to_lowercase();
+    let one_of = |words: &[&str], text: &str| words.iter().any(|word| text.contains(word));
+    // A server behind another one is upstream of it.
+    let why = why.to_lowercase().replace("upstream", "").replace("downstream", "");
+    let (param, model) = (word("param"), model.to_lowercase());
+    // A model's own name says nothing, be it `vision-7b`.
+    let sentence = if model.len() > 2 { why.replace(&model, "") } else { why.clone() };
     if word("code") == "model_not_found" {
         Objection::Model
-    } else if of_form(&word("param")) || of_form(&why) {
+    } else if one_of(&PICTURE, &param) || one_of(&PICTURE, &sentence) {
+        Objection::Picture
+    } else if param.starts_with("stream") || sentence.contains("stream") {
+        Objection::Stream
+    } else if one_of(&FORM, &param) || one_of(&FORM, &why) {
         Objection::Form
-    } else if why.contains("model") && why.contains(&model.to_lowercase()) {
+    } else if why.contains("model") && why.contains(&model) {
         Objection::Model
     } else {
         Objection::Unsaid

@@ -126,6 +126,7 @@ fn fact_text(kind: &FactKind, location: &Location, quote: &str) -> Option<String
         | FactKind::Goal { .. }
         | FactKind::RobotDoes(_)
         | FactKind::RobotTask(_)
+        | FactKind::Asked { .. }
         | FactKind::Pattern(_) => return None,
     })
 }

@@ -20,12 +20,12 @@ mod written;
 use std::ops::Range;
 
 use socrates_model::fault::Message;
+use socrates_model::fault::Span;
 use socrates_model::form::Form;
 use socrates_model::request::Expect;
-use socrates_model::statement::{Background, Became, Statement, TextKey};
+use socrates_model::statement::{Background, Became, Statement, TextKey, covers};
 use socrates_model::{Fault, Location, Reading, Request};
 
-use crate::spans::{covers, span, text_of};
 use crate::understand::{Understood, understood};
 use background::Around;
 use influence::Influence;
@@ -70,7 +70,7 @@ pub(crate) fn statements(request: &Request, location: &Location, read: &Understo
     let (alone, beside) = (alone.as_ref().unwrap_or(read), beside.as_ref().unwrap_or(read));
     let mut found = Vec::new();
     for key in TextKey::ALL {
-        let text = text_of(request, key);
+        let text = key.text_of(request);
         if !text.trim().is_empty() {
             // A form takes the place of the rough scenario; the task and the context say the same beside it.
             let (request, whole) =
@@ -108,7 +108,7 @@ impl<'a> Account<'a> {
         (whole, reading): (&'a Understood, &'a Reading),
         key: TextKey,
     ) -> Self {
-        let text = text_of(request, key);
+        let text = key.text_of(request);
         let tokens = text::tokens(text);
         let kinds = words::kinds(&tokens, location);
         let read = |text: &str| read_again(request, location, key, text);
@@ -255,9 +255,8 @@ impl<'a> Account<'a> {
     fn statement(&self, places: &[usize], became: Became) -> Option<Statement> {
         let at = self.bounds(places)?;
         let quote = self.text.get(at.clone())?.to_owned();
-        let statement = Statement { at: self.key, span: span(self.text, &at)?, quote, became, waived: false };
-        let waived = statement.is_unplayed() && self.request.waive.iter().any(|quote| covers(self.text, quote, &at));
-        Some(Statement { waived, ..statement })
+        let statement = Statement { at: self.key, span: Span::of(self.text, &at)?, quote, became, waived: false };
+        Some(statement.waived_by(self.request))
     }
 
     /// The bytes from the first of some words to the last.

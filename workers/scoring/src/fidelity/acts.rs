@@ -99,14 +99,14 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         Ok(from) => from,
         Err(never) => return never,
     };
-    // Who looks by a rule looks while its leaf runs; one who only happens to face the robot was not startled.
+    // A human who looks by a rule looks while its leaf runs; one who only happens to face the robot was not startled.
     let by_rule = signals.tells_leaves_of(human)
         && signals
             .evidence
             .proposal
             .and_then(|proposal| proposal.human(human))
             .is_some_and(|human| human.rules.iter().any(|rule| rule.act == Action::LookAtRobot));
-    // Who looks before it could see anything was not startled by the robot.
+    // A human who looks before they could see anything was not startled by the robot.
     let seen_s = signals.of(human).iter().find(|moment| moment.sight != Some(false)).map_or(f64::INFINITY, |m| m.t);
     let runs = |t: f64| {
         let spans = signals.leaves_of(human).iter();
@@ -153,7 +153,7 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         Ok(from) => from,
         Err(never) => return never,
     };
-    // Who stands at the end of their path, or waits to set off, walks as far as their tree is concerned.
+    // A human who stands at the end of their path, or waits to set off, walks as far as their tree is concerned.
     let walking: Vec<&LeafSpan> =
         signals.leaves_of(human).iter().filter(|span| Action::Navigate.is_leaf(&span.name)).collect();
     let walks = |t: f64| from.is_reaction() && walking.iter().any(|span| t > span.from_s && t < span.to_s);
@@ -301,7 +301,15 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
                 AgentId::Human(_) | AgentId::Robot => near,
             }
         }
-        None => Finding::never(-1.0, vec![], format!("{agent} never says {gesture}")),
+        None => {
+            let silent = Finding::never(-1.0, vec![], format!("{agent} never says {gesture}"));
+            let AgentId::Human(human) = agent else { return silent };
+            match since(signals, human, |rule| rule.gesture == Some(gesture)) {
+                Ok(_) => silent,
+                Err(never) => Finding::never(-1.0, vec![], format!("{}; {}", silent.evidence, never.evidence))
+                    .missing(never.missed),
+            }
+        }
     }
 }
 

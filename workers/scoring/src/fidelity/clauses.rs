@@ -162,9 +162,8 @@ fn stands_for_queue(signals: &Signals<'_>, given: &[Clause], human: HumanId) -> 
     if !given.iter().any(queues) {
         return true;
     }
-    let nearest = |one: &HumanId| signals.of(*one).iter().map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min);
     let members = humans.iter().filter(|one| one.group == group).map(|one| one.id);
-    members.min_by(|a, b| nearest(a).total_cmp(&nearest(b))).is_none_or(|first| first == human)
+    members.min_by(|a, b| signals.nearest_m(*a).total_cmp(&signals.nearest_m(*b))).is_none_or(|first| first == human)
 }
 
 /// Whether a human who follows somebody has to meet the robot by itself as well. Who follows another human comes as
@@ -293,7 +292,7 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         for human in &proposal.humans {
             let id = human.id;
             let Some(node) = paths.humans.get(&id).and_then(|way| way.first()) else { continue };
-            // Who walks with the robot, or in a group, starts where that puts it.
+            // A human who walks with the robot, or in a group, starts where that puts it.
             let own = !matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
             if own && human.group.is_none() && signals.node(node).is_some() {
                 let starts = Predicate::StartsAt { agent: id.into(), node: node.clone(), within_m: START_M };

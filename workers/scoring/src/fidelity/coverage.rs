@@ -71,8 +71,10 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::Goal { .. }
         | FactKind::Before { .. }
         | FactKind::RobotDoes(_)
-        | FactKind::Place(_) => true,
-        FactKind::Humans(_)
+        | FactKind::Place(_)
+        | FactKind::Asked { of: None | Some(AgentId::Human(_)) } => true,
+        FactKind::Asked { of: Some(AgentId::Robot) }
+        | FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)
         | FactKind::RobotSays(_)
@@ -101,7 +103,9 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::Group { group, members } => members
             .first()
             .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
-        FactKind::Place(_)
+        FactKind::Asked { of: Some(AgentId::Human(human)) } => named && about(clause, *human, None, u32::MAX),
+        FactKind::Asked { of: None | Some(AgentId::Robot) }
+        | FactKind::Place(_)
         | FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)

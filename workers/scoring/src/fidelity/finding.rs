@@ -1,6 +1,16 @@
 //! What a monitor found.
 
+use socrates_model::Trigger;
 use socrates_model::report::Standing;
+
+/// A trigger that never held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Missed {
+    /// The trigger.
+    pub trigger: Trigger,
+    /// How near the robot came in the whole run, m.
+    pub nearest_m: f64,
+}
 
 /// Outcome of one monitor.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +30,8 @@ pub struct Finding {
     pub shift_s: Option<f64>,
     /// A reaction that came before its trigger: told apart for the repair.
     pub early: bool,
+    /// The trigger that never held, where a reaction had no reason: it tells who can mend it.
+    pub missed: Option<Missed>,
 }
 
 impl Finding {
@@ -55,7 +67,16 @@ impl Finding {
 
     fn new(standing: Standing, margin: f64, times_s: Vec<f64>, evidence: impl Into<String>) -> Self {
         let margin = if margin.is_finite() { margin } else { f64::copysign(1e6, margin) };
-        Self { standing, margin, scale: 1.0, times_s, evidence: evidence.into(), shift_s: None, early: false }
+        Self {
+            standing,
+            margin,
+            scale: 1.0,
+            times_s,
+            evidence: evidence.into(),
+            shift_s: None,
+            early: false,
+            missed: None,
+        }
     }
 
     /// Sets the size of a clear margin.
@@ -76,6 +97,13 @@ impl Finding {
     #[must_use]
     pub const fn too_early(mut self) -> Self {
         self.early = true;
+        self
+    }
+
+    /// Names the trigger that never held.
+    #[must_use]
+    pub fn missing(mut self, missed: Option<Missed>) -> Self {
+        self.missed = missed;
         self
     }
 

@@ -22,6 +22,7 @@ mod groups;
 mod kept;
 mod leaves;
 mod meeting;
+mod missed;
 mod named_way;
 mod openings;
 mod plausible;
@@ -40,7 +41,7 @@ mod verdict;
 mod windows;
 
 pub use clauses::{Judged, clauses_of, judge, standing_of};
-pub use finding::Finding;
+pub use finding::{Finding, Missed};
 pub use plausible::Flaw;
 pub use robot::{GOAL_M, goal as robot_goal};
 pub use signals::{Moment, Signals};

@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use socrates_model::{Action, AgentId, Gesture, HumanId, Rule, Trigger};
 
 use crate::fidelity::acts::{spans, timely};
-use crate::fidelity::finding::Finding;
+use crate::fidelity::finding::{Finding, Missed};
 use crate::fidelity::kept::kept;
 use crate::fidelity::meeting::absent;
+use crate::fidelity::missed;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::steps;
 use crate::fidelity::windows::{Mark, best, first};
@@ -94,6 +95,28 @@ fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) 
     signals.of(human).iter().map(mark).collect()
 }
 
+/// The finding where triggers never held together and were nearest to it at a moment: which of them did not, and what was true instead.
+pub(super) fn never_came(signals: &Signals<'_>, human: HumanId, when: &[Trigger], near: Mark) -> Finding {
+    let phrase = Trigger::phrases(when);
+    let trigger = missed_at(signals, human, when, near.t);
+    let instead = trigger.as_ref().map_or_else(String::new, |one| format!(": {}", missed::told(signals, human, one)));
+    let text = format!("the reason of {human} never came ({phrase}){instead}");
+    let missed = trigger.map(|trigger| Missed { trigger, nearest_m: signals.nearest_m(human) });
+    Finding::never(near.margin, vec![near.t], text).missing(missed)
+}
+
+/// Of several triggers that never held together, the one that was farthest from it at this time.
+fn missed_at(signals: &Signals<'_>, human: HumanId, when: &[Trigger], t: f64) -> Option<Trigger> {
+    let moments = signals.of(human);
+    let before = moments.iter().take_while(|moment| moment.t <= t + 1e-9);
+    let nearest_m = before.map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min);
+    let moment = moments.iter().find(|moment| moment.t >= t - 1e-9)?;
+    let margin = |trigger: &Trigger| {
+        trigger_mark(signals, human, std::slice::from_ref(trigger), (moment, nearest_m), 0.0).margin
+    };
+    when.iter().min_by(|one, other| margin(one).total_cmp(&margin(other))).cloned()
+}
+
 /// When all triggers first hold for a human, their distances read loosely; where they never do, the moment that comes nearest.
 pub(super) fn first_reason(signals: &Signals<'_>, human: HumanId, when: &[Trigger]) -> Result<f64, Mark> {
     let loose = marks(signals, human, when, EARLY_M);
@@ -144,7 +167,7 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let phrase = when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
+    let phrase = Trigger::phrases(when);
     let acts = spans(signals, human, act);
     let onsets: Vec<f64> = acts.iter().map(|(from, _)| *from).collect();
     let strict = marks(signals, human, when, 0.0);
@@ -174,12 +197,7 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
     }
     let Some(trigger) = triggered else {
         let near = best(strict.iter().copied()).unwrap_or(Mark::new(0.0, -1.0));
-        let text = format!(
-            "the trigger never came ({phrase}): nearest at {:.1} s with the robot {:.1} m away",
-            near.t,
-            distance(near.t)
-        );
-        return Finding::never(near.margin, vec![near.t], text);
+        return never_came(signals, human, when, near);
     };
     // Begun in time under the loose reading, or by another rule, it counts where it is still going on then.
     let loosely_s = first(loose.iter().copied()).map_or(trigger.t, |mark| mark.t.min(trigger.t));

@@ -169,6 +169,12 @@ impl<'a> Signals<'a> {
         self.moments.get(&human).map_or(&[], Vec::as_slice)
     }
 
+    /// How near the robot comes to a human in the whole run, m; infinite where either is missing.
+    #[must_use]
+    pub fn nearest_m(&self, human: HumanId) -> f64 {
+        self.of(human).iter().map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min)
+    }
+
     /// Leaves of a human.
     #[must_use]
     pub fn leaves_of(&self, human: HumanId) -> &[LeafSpan] {

@@ -5,7 +5,7 @@ use socrates_model::{Action, AgentId, HumanId, Rule, Trigger};
 
 use crate::fidelity::acts::spans;
 use crate::fidelity::finding::Finding;
-use crate::fidelity::reactions::{EARLY_SECS, first_reason, has_onset};
+use crate::fidelity::reactions::{EARLY_SECS, first_reason, has_onset, never_came};
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::windows::Mark;
 
@@ -75,16 +75,14 @@ pub(crate) fn since(signals: &Signals<'_>, human: HumanId, of: impl Fn(&Rule) ->
     if signals.of(human).is_empty() || rules.iter().any(|rule| rule.when.iter().all(|when| *when == Trigger::Always)) {
         return Ok(Since::START);
     }
-    let phrase = |rule: &Rule| rule.when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
     let reasons = rules.iter().map(|rule| (first_reason(signals, human, &rule.when), *rule));
     let came = reasons.clone().filter_map(|(reason, rule)| Some((reason.ok()?, rule)));
     if let Some((t, rule)) = came.min_by(|a, b| a.0.total_cmp(&b.0)) {
-        return Ok(Since { t, phrase: Some(phrase(rule)) });
+        return Ok(Since { t, phrase: Some(Trigger::phrases(&rule.when)) });
     }
     let nearest = reasons.filter_map(|(reason, rule)| Some((reason.err()?, rule)));
     let Some((near, rule)) = nearest.max_by(|a, b| a.0.margin.total_cmp(&b.0.margin)) else { return Ok(Since::START) };
-    let text = format!("the reason of {human} never came ({}): nearest at {:.1} s", phrase(rule), near.t);
-    Err(Finding::never(near.margin, vec![near.t], text))
+    Err(never_came(signals, human, &rule.when, near))
 }
 
 /// [`since`] for an act. What is done although its reason never came was done too early.

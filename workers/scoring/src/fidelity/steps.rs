@@ -6,7 +6,7 @@ use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId, Rule, Trigger
 use crate::fidelity::acts::{motion, spans, timely};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
-use crate::fidelity::reactions::{EARLY_SECS, busy_until, first_reason, first_since, has_onset};
+use crate::fidelity::reactions::{EARLY_SECS, busy_until, first_reason, first_since, has_onset, never_came};
 use crate::fidelity::signals::{MOMENT_SECS, Signals};
 use crate::tracks::MOVING_MPS;
 
@@ -81,13 +81,10 @@ pub(super) fn step(signals: &Signals<'_>, human: HumanId, rule: &Rule, within_s:
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let phrase = rule.when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
+    let phrase = Trigger::phrases(&rule.when);
     let reason_s = match first_reason(signals, human, &rule.when) {
         Ok(t) => t,
-        Err(near) => {
-            let text = format!("the trigger never came ({phrase}): nearest at {:.1} s", near.t);
-            return Finding::never(near.margin, vec![near.t], text);
-        }
+        Err(near) => return never_came(signals, human, &rule.when, near),
     };
     let due_s = busy_until(signals, human, &rule.act, reason_s);
     let begun = match rule.gesture {
