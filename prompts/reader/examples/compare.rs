@@ -252,7 +252,7 @@ impl Tally {
     fn line(&self, name: &str) -> String {
         let share = |part: usize, all: usize| if all == 0 { 0.0 } else { 100.0 * part as f64 / all as f64 };
         format!(
-            "{name:<28} {:>5} requests {:>6} facts  old {:>5.1} %  new {:>5.1} %  silent: old {:>4.1} %, new {:>4.1} %  read whole: old {:>5.1} %, new {:>5.1} %, needlessly not {:>5.1} %  statements: agreed {:>5.1} % of old, {:>5.1} % of new",
+            "{name:<28} {:>5} requests {:>6} facts  old {:>5.1} %  new {:>5.1} %  silent: old {:>4.2} %, new {:>4.2} %  read whole: old {:>5.1} %, new {:>5.1} %, needlessly not {:>5.1} %  statements: agreed {:>5.1} % of old, {:>5.1} % of new",
             self.requests,
             self.facts,
             share(self.old, self.facts),
@@ -369,6 +369,14 @@ fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options:
         ..Tally::default()
     };
     let mut shown = options.list.is_none();
+    if !aside && options.list.as_deref() == Some("dump") {
+        println!(
+            "### {} {}\n{}",
+            if right { "right" } else { "wrong" },
+            if new.honest { "flagged" } else { "whole" },
+            reader.passes(&case.text)
+        );
+    }
     for fact in &case.facts {
         let kind = kind(fact);
         let old_honest = old.honest;
@@ -410,7 +418,9 @@ fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options:
         }
     }
     if !aside {
-        for piece in read.pieces.iter().filter(|piece| piece.fate == Fate::NotRead) {
+        let lost = |piece: &&socrates_reader::Piece| matches!(piece.fate, Fate::NotRead | Fate::NotPlayed(_));
+        let wanted = options.list.is_none() || right;
+        for piece in read.pieces.iter().filter(lost).filter(|_| wanted) {
             *seen.unread.entry(case.text.get(piece.at.clone()).unwrap_or_default().to_lowercase()).or_default() += 1;
         }
     }
@@ -449,7 +459,7 @@ fn report(sets: bool, aside: bool, tallies: &BTreeMap<(bool, String), Tally>, se
     let mut unread: Vec<(&String, &usize)> = unread.iter().collect();
     unread.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
     println!("\nnot read most often");
-    for (words, count) in unread.iter().take(60) {
+    for (words, count) in unread.iter().take(400) {
         print!("{count} {words} | ");
     }
     times.sort_by(f64::total_cmp);

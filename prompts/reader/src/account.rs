@@ -11,10 +11,18 @@ use unicode_segmentation::UnicodeSegmentation as _;
 
 use crate::cast::People;
 use crate::clause::Clause;
+use crate::discourse::Told;
 use crate::normalize::Scene;
 use crate::rows::{Act, Cue};
-use crate::statement::{Reason, Says, Statement};
-use crate::story::{Line, Story};
+use crate::statement::{Reason, Says};
+use crate::story::{Line, Story, Telling};
+
+/// Why what was said of somebody is not in the story.
+const ONE_WAY: &str =
+    "each person stands to the robot's way in one way, and the robot's way has one start and one goal";
+
+/// Why somebody is named and may be read in part.
+const UNPLACED: &str = "it was not made out what they do, or where they come from, though that of others was";
 
 /// What became of a piece of a text.
 #[derive(Debug, Clone, PartialEq)]
@@ -107,12 +115,13 @@ impl Fate {
             Says::Background(reason) => (Self::Background(*reason), 0),
             Says::Introduce(_)
             | Says::Noted(_)
+            | Says::Walks(_)
             | Says::Relate(..)
             | Says::Group(_)
             | Says::Pace(..)
             | Says::Do(_)
             | Says::RobotSays(Some(_), _)
-            | Says::Then(_)
+            | Says::Then(..)
             | Says::Goes
             | Says::Happens(..)
             | Says::There
@@ -125,14 +134,8 @@ impl Fate {
 }
 
 /// What became of every piece, in the order of the text.
-pub(crate) fn account(
-    text: &str,
-    scene: &Scene,
-    clauses: &[Clause],
-    statements: &[Statement<People>],
-    story: &Story,
-) -> Vec<Piece> {
-    let mut pieces = words(scene, clauses, statements, story);
+pub(crate) fn account(text: &str, scene: &Scene, clauses: &[Clause], told: &Told, telling: &Telling) -> Vec<Piece> {
+    let mut pieces = words(scene, clauses, told, telling);
     let background = scene.background.iter();
     pieces.extend(background.map(|(at, reason)| Piece {
         at: at.clone(),
@@ -153,11 +156,15 @@ pub(crate) fn account(
 }
 
 /// The fate of every word of the scene, each a piece of its own.
-fn words(scene: &Scene, clauses: &[Clause], statements: &[Statement<People>], story: &Story) -> Vec<Piece> {
+fn words(scene: &Scene, clauses: &[Clause], told: &Told, telling: &Telling) -> Vec<Piece> {
     // The statement that is about the fewest words tells of a word; of two about the same, the one that loses more.
     let mut fates: Vec<Option<(usize, u8, Fate)>> = vec![None; scene.tokens.len()];
-    for statement in statements {
-        let (fate, rank) = Fate::of(&statement.says, story);
+    for (number, statement) in told.statements.iter().enumerate() {
+        let (fate, rank) = if telling.lost.contains(&number) {
+            (Fate::NotPlayed(ONE_WAY.to_owned()), 2)
+        } else {
+            Fate::of(&statement.says, &telling.story)
+        };
         let length = statement.tokens.len();
         for own in fates.get_mut(statement.tokens.clone()).unwrap_or_default() {
             let wins = |(other, own): &(usize, u8)| *other > length || *other == length && *own < rank;
@@ -167,6 +174,12 @@ fn words(scene: &Scene, clauses: &[Clause], statements: &[Statement<People>], st
         }
     }
     let mut fates: Vec<Option<Fate>> = fates.into_iter().map(|own| own.map(|(_, _, fate)| fate)).collect();
+    for tokens in &telling.unplaced {
+        fates.get_mut(tokens.clone()).unwrap_or_default().fill(Some(Fate::NotPlayed(UNPLACED.to_owned())));
+    }
+    for doubt in &told.doubts {
+        fates.get_mut(doubt.clone()).unwrap_or_default().fill(Some(Fate::NotRead));
+    }
     let numbers = numbers(scene.tokens.len(), clauses);
     for (token, fate) in scene.tokens.iter().zip(&mut fates) {
         if fate.is_none() && token.is_said() && !token.says_nothing() {

@@ -63,6 +63,8 @@ pub(crate) struct Cast {
     pub(crate) relations: BTreeMap<usize, Relation>,
     /// Of whom a pronoun is not said: those who do it.
     pub(crate) excluded: People,
+    /// What was said as a condition, and for which nobody has waited yet, by tokens.
+    pub(crate) waiting: Option<Range<usize>>,
     /// Noun phrases of which it is not sure whom they mean, by tokens.
     pub(crate) doubts: Vec<Range<usize>>,
     /// Who was called the others last.
@@ -133,10 +135,16 @@ impl Cast {
     pub(crate) fn meant(&mut self, noun: &Noun) -> People {
         match &noun.head {
             Head::Robot => People::new(),
-            Head::He | Head::It => self.one_named_last(noun.female),
+            Head::He | Head::It => self.one_named_last(noun),
             Head::They => match () {
                 () if self.last.len() > 1 => self.last.clone(),
-                () if !self.set.is_empty() => self.set.clone(),
+                () if !self.set.is_empty() => {
+                    // Whoever was named since may be one of them.
+                    if self.last.iter().any(|last| !self.set.contains(last)) {
+                        self.doubts.push(noun.tokens.clone());
+                    }
+                    self.set.clone()
+                }
                 () => self.everybody(),
             },
             Head::Who => self.last.clone(),
@@ -147,7 +155,8 @@ impl Cast {
     }
 
     /// Whoever was named last and may be a woman, or a man, as the pronoun says.
-    pub(crate) fn one_named_last(&mut self, female: Option<bool>) -> People {
+    pub(crate) fn one_named_last(&mut self, noun: &Noun) -> People {
+        let female = noun.female;
         let others = self.before.iter().copied().chain(self.everybody().into_iter().rev());
         // `a man with two children; he …` is no child.
         let one = self.before.iter().copied().filter(|_| self.before.len() == 1 && self.last.len() > 1);
@@ -155,6 +164,17 @@ impl Cast {
         let all = || all.iter().copied().filter(|person| !self.excluded.contains(person));
         let may = |person: &usize| female.is_none() || self.female.get(person).is_none_or(|own| Some(*own) == female);
         let found = all().find(may).or_else(|| self.last.first().copied());
+        // Somebody else is known to be a woman, or a man, as the pronoun says: either may be meant.
+        let known = |person: &usize| female.is_some() && self.female.get(person).copied() == female;
+        if let Some(found) = found.filter(|found| !known(found)) {
+            let other = self.everybody().into_iter().any(|person| person != found && known(&person));
+            // Of several who were named together nobody is singled out.
+            let several = self.last.contains(&found) && self.last.iter().filter(|person| may(person)).count() > 1;
+            let far = !self.last.is_empty() && !self.last.contains(&found) && !self.before.contains(&found);
+            if far || other || several && noun.head == Head::He {
+                self.doubts.push(noun.tokens.clone());
+            }
+        }
         if let (Some(person), Some(female)) = (found, female) {
             self.female.entry(person).or_insert(female);
         }
@@ -187,7 +207,14 @@ impl Cast {
             {
                 self.everybody()
             }
-            None if !self.set.is_empty() => self.set.clone(),
+            None if !self.set.is_empty() => {
+                // Of two sets either may be meant.
+                let others = self.everybody().into_iter().filter(|person| !self.set.contains(person)).count();
+                if others > 1 && !matches!(noun.pick, Pick::Plain | Pick::Some | Pick::Another) {
+                    self.doubts.push(noun.tokens.clone());
+                }
+                self.set.clone()
+            }
             None => self.everybody(),
         };
         if let Some(except) = &noun.except {

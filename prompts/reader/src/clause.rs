@@ -162,14 +162,22 @@ impl Clause {
         !self.acts.is_empty() && self.acts.iter().all(alone) && !self.own && matches!(self.join, Join::Start)
     }
 
-    /// Whether it names a text, and tells of nobody and nothing: a few words of which nothing is known.
-    pub(crate) fn is_heading(&self) -> bool {
-        let silent = self.subject.is_empty() && self.acts.is_empty() && self.also.is_empty() && self.places.is_empty();
-        silent
-            && !self.left.is_empty()
+    /// Whether it names nobody and no place, and nothing that is known is done in it.
+    pub(crate) fn is_silent(&self) -> bool {
+        !self.own
+            && self.acts.is_empty()
+            && self.also.is_empty()
+            && self.places.is_empty()
             && self.conditions.is_empty()
             && self.denials.is_empty()
-            && self.left.len() <= HEADING
+            && self.within_m.is_none()
+            && self.lasts_s.is_none()
+            && self.after_s.is_none()
+    }
+
+    /// Whether it names a text, and tells of nobody and nothing: a few words of which nothing is known.
+    pub(crate) fn is_heading(&self) -> bool {
+        self.is_silent() && !self.left.is_empty() && self.left.len() <= HEADING
     }
 
     pub(crate) fn is_bare(&self) -> bool {

@@ -30,9 +30,14 @@ pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement
         maker.first = clause.join == Join::Start;
         maker.tells = clause.join == Join::Colon || maker.tells && !maker.first;
         maker.asks = clause.asks;
-        // `Regression for bug 371: …`
+        // `Regression for bug 371: …`; a sentence in which nobody is named, and nothing that is known is done.
         let colon = clauses.get(at + 1).is_some_and(|next| next.join == Join::Colon);
-        if (colon || at == 0 && !clause.verbal) && clause.is_heading() {
+        let sentence = clauses.get(..at).unwrap_or_default().iter().rposition(|own| own.join == Join::Start);
+        let from = if maker.first { at } else { sentence.unwrap_or(0) };
+        let own = clauses.get(from..).unwrap_or_default().iter();
+        let own = own.enumerate().take_while(|(number, own)| *number == 0 || own.join != Join::Start);
+        let alone = at == 0 && !clause.verbal && own.map(|(_, own)| own).all(Clause::is_silent);
+        if colon && clause.is_heading() || alone {
             maker.say(clause.tokens.clone(), Says::Background(Background::Comment));
             continue;
         }
@@ -100,9 +105,12 @@ impl Maker<'_> {
         self.rest(clause);
         // A reason for which nobody does anything yet is one for what comes.
         let done = self.found.get(start..).unwrap_or_default();
-        let done = done.iter().any(|own| matches!(own.says, Says::Do(_) | Says::Then(_)));
+        let done = done.iter().any(|own| matches!(own.says, Says::Do(_) | Says::Then(..)));
         if let Some(reason) = when.iter().chain(&until).next().filter(|_| !done) {
-            self.say(used.first().cloned().unwrap_or(0..0), Says::Then(reason.clone()));
+            let own = clause.conditions.first().map(|condition| condition.clause.tokens.clone());
+            let met = matches!(reason.cue, Cue::Visible | Cue::Near | Cue::Encounter | Cue::Blocking)
+                && reason.amount.is_none();
+            self.say(own.unwrap_or_else(|| used.first().cloned().unwrap_or(0..0)), Says::Then(reason.clone(), !met));
         }
         self.with_the_rest(clause, start, &when, used);
         for next in then {
@@ -200,12 +208,13 @@ impl Maker<'_> {
         } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
             let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m.map(|m| m.value) };
             self.say(tokens.clone(), Says::Introduce(who));
-            self.say(tokens, Says::Then(reason));
+            self.say(tokens, Says::Then(reason, false));
         } else if frame.asks {
             self.say(tokens, Says::NotRead);
         } else if relation.is_none() && !frame.group {
             // What is denied, or says no more than that somebody is there.
-            self.say(tokens, Says::Noted(who));
+            let walks = frame.plain && frame.goes && !act.not && act.object.is_none() && whole.clause.places.is_empty();
+            self.say(tokens, if walks { Says::Walks(who) } else { Says::Noted(who) });
         }
     }
 
@@ -271,12 +280,16 @@ impl Maker<'_> {
             (_, Some(person)) => {
                 self.say(tokens.clone(), Says::Introduce(person.clone()));
                 self.modified(&person);
+                // `The robot follows a nurse`: what it does to somebody is in no form.
+                if cue.is_none() && !frame.plain {
+                    self.say(tokens.clone(), Says::NotRead);
+                }
             }
             (_, None) => {}
         }
         if let Some(cue) = cue {
             let amount = whole.clause.within_m.filter(|_| cue == Cue::Near).map(|m| m.value);
-            self.say(tokens, Says::Then(Reason { who: None, cue, sign: None, amount }));
+            self.say(tokens, Says::Then(Reason { who: None, cue, sign: None, amount }, false));
         }
     }
 

@@ -1,6 +1,8 @@
 //! Pass 6: who is meant. Statements of noun phrases become statements of people, in the order of the text; what they react to, and
 //! what was asked for.
 
+use std::ops::Range;
+
 use socrates_model::Gesture;
 
 use crate::cast::{ANYBODY, Cast, People};
@@ -17,6 +19,8 @@ pub(crate) struct Told {
     /// Those who are named without an article or a number: `blind corner, startled pedestrian`.
     pub(crate) plain: People,
     pub(crate) statements: Vec<Statement<People>>,
+    /// Tokens of which it is not sure whom or what they mean, whatever was made of them.
+    pub(crate) doubts: Vec<Range<usize>>,
 }
 
 /// Finds out who is meant.
@@ -26,22 +30,18 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
     for statement in statements {
         cast.begin(statement);
         let says = cast.says(&statement.says);
+        if matches!(says, Some(Says::Then(_, true))) {
+            let before = cast.waiting.replace(statement.tokens.clone());
+            cast.doubts.extend(before);
+        }
         if let Some(says) = says {
             let Statement { tokens, first, tells, partly, asks, .. } = statement;
             let (partly, first, tells, asks) = (*partly, *first, *tells, *asks);
             told.push(Statement { partly, tokens: tokens.clone(), first, tells, asks, says });
         }
     }
-    let doubts = std::mem::take(&mut cast.doubts);
-    told.extend(doubts.into_iter().map(|tokens| Statement {
-        partly: false,
-        tokens,
-        first: false,
-        tells: false,
-        asks: false,
-        says: Says::NotRead,
-    }));
-    let told = Told { roles: cast.roles, vague: cast.vague, plain: cast.plain, statements: told };
+    cast.doubts.extend(cast.waiting.take());
+    let told = Told { roles: cast.roles, vague: cast.vague, plain: cast.plain, statements: told, doubts: cast.doubts };
     Told { statements: doubted(&told), ..told }
 }
 
@@ -50,14 +50,16 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
 fn doubted(told: &Told) -> Vec<Statement<People>> {
     let known = |person: usize| {
         told.statements.iter().any(|statement| match &statement.says {
-            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) | Says::Noted(who) => who.contains(&person),
+            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) | Says::Noted(who) | Says::Walks(who) => {
+                who.contains(&person)
+            }
             Says::Do(deed) => {
                 deed.who.contains(&person) || deed.whom.as_ref().is_some_and(|whom| whom.contains(&person))
             }
             Says::RobotSays(_, Some(who)) => who.contains(&person),
             Says::Introduce(_)
             | Says::RobotSays(..)
-            | Says::Then(_)
+            | Says::Then(..)
             | Says::Happens(..)
             | Says::There
             | Says::GoalThere
@@ -91,10 +93,15 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
 /// Of whom something is said.
 fn people_of(says: &Says<People>) -> &[usize] {
     match says {
-        Says::Introduce(who) | Says::Noted(who) | Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) => who,
+        Says::Introduce(who)
+        | Says::Noted(who)
+        | Says::Walks(who)
+        | Says::Relate(who, ..)
+        | Says::Group(who)
+        | Says::Pace(who, _) => who,
         Says::Do(deed) => &deed.who,
         Says::RobotSays(..)
-        | Says::Then(_)
+        | Says::Then(..)
         | Says::Happens(..)
         | Says::There
         | Says::GoalThere
@@ -140,6 +147,7 @@ impl Cast {
         }
         if statement.first {
             self.unnamed.clear();
+            self.doubts.extend(self.waiting.take());
             // A sign is answered in the next sentence as well.
             self.pending.retain(|reason| reason.cue == Cue::Says);
         }
@@ -169,6 +177,7 @@ impl Cast {
                 Says::Relate(who, *relation, *side)
             }
             Says::Noted(who) => Says::Noted(self.people(who)),
+            Says::Walks(who) => Says::Walks(self.people(who)),
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
             // `a second one does so`: stands to the robot's way as the first does.
@@ -180,6 +189,10 @@ impl Cast {
                     && self.related.is_some() =>
             {
                 Says::Relate(self.people(&deed.who), self.related, None)
+            }
+            // Of nothing that was asked for, and nothing that was done, nobody does the same.
+            Says::Do(deed) if deed.obeys && self.asked.is_none() && self.done.is_none() && deed.when.is_empty() => {
+                Says::NotRead
             }
             Says::Do(deed) => {
                 self.related = None;
@@ -194,11 +207,11 @@ impl Cast {
                 self.pending = vec![Reason { who: None, cue: Cue::Says, sign: *sign, amount: None }];
                 Says::RobotSays(*sign, to)
             }
-            Says::Then(reason) => {
+            Says::Then(reason, waits) => {
                 let reason = self.reason(reason);
                 self.pending = vec![reason.clone()];
                 self.signed = None;
-                Says::Then(reason)
+                Says::Then(reason, *waits)
             }
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,
@@ -254,7 +267,10 @@ impl Cast {
         if when.is_empty() && !deed.not && !deed.ongoing {
             when = match &self.signed {
                 Some((signer, reason)) if signer.iter().all(|signer| !who.contains(signer)) => vec![reason.clone()],
-                _ => self.pending.clone(),
+                _ => {
+                    self.waiting = None;
+                    self.pending.clone()
+                }
             };
         }
         let (mut act, mut says, mut whom) = (deed.act, deed.says, whom);

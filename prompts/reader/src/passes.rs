@@ -3,16 +3,16 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::account::{Fate, Read, account};
+use crate::account::{Fate, Piece, Read, account};
 use crate::chunk::{Chunk, chunks};
-use crate::clause::Clause;
+use crate::clause::{Clause, Predicate};
 use crate::clause_says::statements;
 use crate::discourse::{Told, told};
 use crate::lexicon::Lexicon;
 use crate::normalize::{Scene, normalize};
 use crate::sentence::clauses;
 use crate::statement::{Named, Says, Statement};
-use crate::story::{Line, Story, story};
+use crate::story::{Telling, story};
 use crate::token::Token;
 
 /// What each pass made of a text.
@@ -26,8 +26,7 @@ pub struct Passes<'a> {
     clauses: Vec<Clause>,
     statements: Vec<Statement<Named>>,
     told: Told,
-    story: Story,
-    lines: Vec<(Line, Range<usize>)>,
+    telling: Telling,
 }
 
 impl<'a> Passes<'a> {
@@ -38,8 +37,8 @@ impl<'a> Passes<'a> {
         let clauses = clauses(&chunks, lexicon);
         let statements = statements(&clauses, lexicon);
         let told = told(&statements);
-        let (story, lines) = story(&told);
-        Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, story, lines }
+        let telling = story(&told);
+        Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, telling }
     }
 
     /// Acts of clauses of which no statement says anything: a fault of the reader, and always empty.
@@ -52,7 +51,7 @@ impl<'a> Passes<'a> {
                 .any(|statement| statement.tokens.start < tokens.end && tokens.start < statement.tokens.end)
         };
         let acts = self.clauses.iter().flat_map(|clause| &clause.acts).filter(|act| !said(&act.tokens));
-        let plain = |act: &&crate::clause::Predicate| {
+        let plain = |act: &&Predicate| {
             self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain || frame.part.is_some())
         };
         acts.filter(|act| !plain(act))
@@ -61,17 +60,30 @@ impl<'a> Passes<'a> {
             .collect()
     }
 
+    /// What became of every piece.
+    fn pieces(&self) -> Vec<Piece> {
+        let mut pieces = account(&self.text, &self.scene, &self.clauses, &self.told, &self.telling);
+        let aside = |piece: &&mut Piece| piece.clause.is_none() && matches!(piece.fate, Fate::Background(_));
+        for piece in pieces.iter_mut().filter(aside) {
+            // What asks for nothing, and has somebody do something all the same, is not read.
+            if tells_of_somebody(self.text.get(piece.at.clone()).unwrap_or_default(), self.lexicon) {
+                piece.fate = Fate::NotRead;
+            }
+        }
+        pieces
+    }
+
     /// What came of it.
     #[must_use]
     pub fn read(self) -> Read {
-        let pieces = account(&self.text, &self.scene, &self.clauses, &self.told.statements, &self.story);
+        let pieces = self.pieces();
         let bytes = |tokens: Range<usize>| {
             let own = self.scene.tokens.get(tokens)?;
             let start = own.iter().map(|token| token.at.start).min()?;
             Some(start..own.iter().map(|token| token.at.end).max()?)
         };
-        let lines = self.lines.into_iter().filter_map(|(line, tokens)| Some((line, bytes(tokens)?))).collect();
-        Read { story: self.story, pieces, lines }
+        let lines = self.telling.lines.into_iter().filter_map(|(line, tokens)| Some((line, bytes(tokens)?))).collect();
+        Read { story: self.telling.story, pieces, lines }
     }
 }
 
@@ -89,14 +101,26 @@ impl fmt::Display for Passes<'_> {
         for statement in &self.statements {
             writeln!(f, "statement  {}", Shown(&statement.says))?;
         }
-        write!(f, "{}", self.story)?;
-        for piece in account(&self.text, &self.scene, &self.clauses, &self.told.statements, &self.story) {
+        write!(f, "{}", self.telling.story)?;
+        for piece in self.pieces() {
             if !matches!(piece.fate, Fate::Read) {
                 writeln!(f, "{:?}: {}", piece.fate, self.text.get(piece.at).unwrap_or_default())?;
             }
         }
         Ok(())
     }
+}
+
+/// Whether somebody does something in words that were put aside.
+fn tells_of_somebody(text: &str, lexicon: &Lexicon) -> bool {
+    let tokens = crate::lex::lex(text, &lexicon.words);
+    let acts = |act: &Predicate| {
+        let frame = lexicon.frames.get(act.row);
+        !act.not && frame.is_some_and(|frame| !frame.plain && (frame.act.is_some() || frame.relate.is_some()))
+    };
+    let people = |clause: &Clause| clause.own && clause.subject.iter().any(|noun| !noun.may_be_robot());
+    let clauses = clauses(&chunks(&tokens, lexicon), lexicon);
+    clauses.iter().any(|clause| people(clause) && clause.acts.iter().any(acts))
 }
 
 fn write_clause(f: &mut fmt::Formatter<'_>, clause: &Clause, lexicon: &Lexicon, name: &str) -> fmt::Result {
@@ -139,6 +163,7 @@ impl fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Says::Introduce(who) => write!(f, "introduce {}", spaced(who)),
+            Says::Walks(who) => write!(f, "walks {}", spaced(who)),
             Says::Noted(who) => write!(f, "noted {}", spaced(who)),
             Says::Relate(who, relation, side) => write!(f, "relate {}: {relation:?} {side:?}", spaced(who)),
             Says::Group(who) => write!(f, "group {}", spaced(who)),
@@ -154,7 +179,7 @@ impl fmt::Display for Shown<'_> {
                 deed.for_s.map_or(Ok(()), |secs| write!(f, " for {secs} s"))
             }
             Says::RobotSays(sign, _) => write!(f, "robot says {sign:?}"),
-            Says::Then(reason) => write!(f, "then {:?}", reason.cue),
+            Says::Then(reason, _) => write!(f, "then {:?}", reason.cue),
             Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),
             Says::There => f.write_str("happens there"),
             Says::GoalThere => f.write_str("robot goes there"),

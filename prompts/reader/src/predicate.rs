@@ -4,7 +4,7 @@ use crate::chunk::{Amount, Chunk, Is};
 use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
 use crate::noun::{BRISK_MPS, Head, Pick, SLOW_MPS};
-use crate::parser::{Parser, says_nothing};
+use crate::parser::{Parser, names_somebody, says_nothing};
 use crate::token::{Bent, Mark, Sort};
 use socrates_model::{Gesture, PlaceClass};
 
@@ -122,7 +122,9 @@ impl Parser<'_> {
             clause.pace_mps = Some(pace(SLOW_MPS, chunk));
         } else if chunk.word(Sort::Brisk) {
             clause.pace_mps = Some(pace(BRISK_MPS, chunk));
-        } else if chunk.word(Sort::Looks) || chunk.word(Sort::Thing) || self.counts_things() {
+        } else if !self.acts_like_a_verb()
+            && (chunk.word(Sort::Looks) || chunk.word(Sort::Thing) || self.counts_things())
+        {
             clause.looks.extend(chunk.tokens.clone());
         } else if !says_nothing(chunk) {
             clause.verbal |= matches!(chunk.bent, Bent::S | Bent::Ed);
@@ -136,6 +138,13 @@ impl Parser<'_> {
         let lets = self.peek().is_some_and(|chunk| chunk.word(Sort::Lets) && chunk.bent == Bent::Base);
         let somebody = self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some);
         lets && somebody && clause.is_bare() && !clause.own && clause.subject.is_empty()
+    }
+
+    /// `the supervisor leads`: a word for a thing, bent as a verb behind somebody.
+    fn acts_like_a_verb(&self) -> bool {
+        let bent =
+            self.peek().is_some_and(|chunk| matches!(chunk.bent, Bent::S | Bent::Ed) && !chunk.word(Sort::Looks));
+        bent && self.before().and_then(Chunk::noun).is_some_and(names_somebody)
     }
 
     /// `two racks`: a number of things.
@@ -264,6 +273,8 @@ impl Parser<'_> {
                 // `when she hears this she stops`
                 // `asks to pass both of them make room`
                 Is::Noun(noun) if (noun.nominative || noun.pick == Pick::All) && !quoted => return None,
+                // Somebody who is new is not asked: `to wait because two operators …`.
+                Is::Noun(noun) if names_somebody(noun) && at > self.at && !quoted => return None,
                 Is::Noun(_) => {}
                 Is::Word
                     if chunk.word(Sort::And)
@@ -273,6 +284,8 @@ impl Parser<'_> {
                 {
                     return None;
                 }
+                // `tells it not to wait`
+                Is::Word if chunk.word(Sort::Not) && !quoted => return None,
                 Is::Word if says_nothing(chunk) || chunk.word(Sort::Not) => {}
                 Is::Word | Is::Whose(_) | Is::Place(_) | Is::Amount(_) => return None,
             }

@@ -276,6 +276,7 @@ fn line(kind: &FactKind) -> String {
         | FactKind::Before { .. }
         | FactKind::RobotTask(_)
         | FactKind::RobotDoes(_)
+        | FactKind::Asked { .. }
         | FactKind::Pattern(_) => String::new(),
     }
 }

@@ -33,6 +33,8 @@ pub enum Says<W> {
     Introduce(W),
     /// Somebody does what leaves no trace in a form: walks, or pays no attention.
     Noted(W),
+    /// Somebody walks, and no more is said of how: nothing but where something is told of them already.
+    Walks(W),
     /// How somebody stands to the robot's way.
     Relate(W, Option<Relation>, Option<Side>),
     /// They are a group.
@@ -43,8 +45,8 @@ pub enum Says<W> {
     Do(Deed<W>),
     /// The robot makes a sign, to somebody.
     RobotSays(Option<Gesture>, Option<W>),
-    /// Something happens to which people may react from then on.
-    Then(Reason<W>),
+    /// Something happens to which people may react from then on; whether it is a condition, for which somebody has to wait.
+    Then(Reason<W>, bool),
     /// Where it happens; the number ranks it: people are there (3), it stands alone (2), the robot is there (1).
     Happens(PlaceClass, u8),
     /// It happens where the robot's way ends, unless another place is told.

@@ -1,5 +1,6 @@
 //! Pass 7: statements of people to a story, and the story as a form.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -97,29 +98,57 @@ pub enum Line {
     RobotSays(Gesture),
 }
 
-/// Tells the story that statements make, with the tokens that say each line of it.
-pub(crate) fn story(told: &Told) -> (Story, Vec<(Line, Range<usize>)>) {
+/// A story with what says each line of it, and what of the statements is not in it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Telling {
+    pub(crate) story: Story,
+    /// Lines of the story, each with the tokens that say it.
+    pub(crate) lines: Vec<(Line, Range<usize>)>,
+    /// Numbers of the statements of which a line is not in the story: another one took its place, or somebody was not made out.
+    pub(crate) lost: BTreeSet<usize>,
+    /// Tokens by which those are named of whom less was read than of the others.
+    pub(crate) unplaced: Vec<Range<usize>>,
+}
+
+/// Tells the story that statements make.
+pub(crate) fn story(told: &Told) -> Telling {
     let people = told.roles.iter().map(|role| Person { role: role.clone(), ..Person::default() }).collect();
     let mut teller = Teller { story: Story { people, ..Story::default() }, ..Teller::default() };
-    for statement in &told.statements {
-        teller.tell(&statement.says, &statement.tokens);
+    for (number, statement) in told.statements.iter().enumerate() {
+        teller.tell(number, &statement.says, &statement.tokens);
     }
-    let Teller { mut story, mut lines, there, goal_there, closed, .. } = teller;
+    let Teller { mut story, lines, unsaid, there, goal_there, closed, .. } = teller;
     if goal_there && story.robot_goal.is_none() {
         story.robot_goal = closed;
     }
     let out = unsure(told);
     story.without(&out);
-    lines.retain_mut(|(line, _)| line.without(&out));
     story.settle(told, there);
-    (story, lines)
+    let mut telling = Telling { story, lost: unsaid, ..Telling::default() };
+    for (number, mut line, tokens) in lines {
+        let named = matches!(line, Line::Person(_));
+        if line.without(&out) && line.holds(&telling.story) {
+            telling.lines.push((line, tokens));
+        } else if !named {
+            telling.lost.insert(number);
+        }
+    }
+    let unplaced = telling.story.unplaced();
+    for person in unplaced {
+        let line = telling.lines.iter().find(|(line, _)| line.person() == Some(person));
+        telling.unplaced.extend(line.map(|(_, tokens)| tokens.clone()));
+    }
+    telling
 }
 
 /// A story as it is being told.
 #[derive(Default)]
 struct Teller {
     story: Story,
-    lines: Vec<(Line, Range<usize>)>,
+    /// Lines with the numbers of their statements, and their tokens.
+    lines: Vec<(usize, Line, Range<usize>)>,
+    /// Numbers of the statements that say something for which the story has no line.
+    unsaid: BTreeSet<usize>,
     groups: usize,
     /// How much the place counts that was told so far.
     ranked: u8,
@@ -131,7 +160,7 @@ struct Teller {
 }
 
 impl Teller {
-    fn tell(&mut self, says: &Says<People>, tokens: &Range<usize>) {
+    fn tell(&mut self, number: usize, says: &Says<People>, tokens: &Range<usize>) {
         let story = &mut self.story;
         let steps: Vec<usize> = story.people.iter().map(|person| person.steps.len()).collect();
         let mut lines: Vec<Line> = Vec::new();
@@ -154,7 +183,7 @@ impl Teller {
             }
             Says::Do(deed) => lines.extend(story.does(deed).into_iter().map(Line::RobotSays)),
             Says::RobotSays(Some(gesture), _)
-            | Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }) => {
+            | Says::Then(Reason { who: None, cue: Cue::Says, sign: Some(gesture), .. }, _) => {
                 story.robot_sign(*gesture);
                 lines.push(Line::RobotSays(*gesture));
             }
@@ -181,10 +210,16 @@ impl Teller {
                 story.robot_goal = Some(*class);
                 lines.push(Line::RobotGoal(*class));
             }
-            Says::Introduce(who) | Says::Noted(who) => lines.extend(who.iter().map(|person| Line::Person(*person))),
+            // Whoever does something and walks then would have to walk on: that is not what was read.
+            Says::Walks(who) if who.iter().any(|person| steps.get(*person).is_some_and(|steps| *steps > 0)) => {
+                self.unsaid.insert(number);
+            }
+            Says::Introduce(who) | Says::Noted(who) | Says::Walks(who) => {
+                lines.extend(who.iter().map(|person| Line::Person(*person)))
+            }
             Says::Group(_)
             | Says::RobotSays(None, _)
-            | Says::Then(_)
+            | Says::Then(..)
             | Says::Background(_)
             | Says::NotPlayed(_)
             | Says::Goes
@@ -194,11 +229,44 @@ impl Teller {
             let now = self.story.people.get(person).map_or(0, |person| person.steps.len());
             lines.extend((before..now).map(|step| Line::Step(person, step)));
         }
-        self.lines.extend(lines.into_iter().map(|line| (line, tokens.clone())));
+        self.lines.extend(lines.into_iter().map(|line| (number, line, tokens.clone())));
     }
 }
 
 impl Line {
+    /// Whether a story says so. Somebody who stands there and then walks, or is inside, stood there as well.
+    fn holds(&self, story: &Story) -> bool {
+        match self {
+            Self::Relation(person, relation) => {
+                let own = story.people.get(*person).and_then(|person| person.relation);
+                own == Some(*relation) || own.is_some() && *relation == Relation::Static
+            }
+            Self::RobotStart(class) => story.robot_start == Some(*class),
+            Self::RobotGoal(class) => story.robot_goal == Some(*class),
+            Self::Person(_)
+            | Self::Side(_)
+            | Self::Pace(_)
+            | Self::Group(_)
+            | Self::Step(..)
+            | Self::Place(_)
+            | Self::RobotVia(_)
+            | Self::RobotSays(_) => true,
+        }
+    }
+
+    /// Of whom it tells.
+    pub(crate) const fn person(&self) -> Option<usize> {
+        match self {
+            Self::Person(person)
+            | Self::Relation(person, _)
+            | Self::Side(person)
+            | Self::Pace(person)
+            | Self::Group(person)
+            | Self::Step(person, _) => Some(*person),
+            Self::Place(_) | Self::RobotStart(_) | Self::RobotGoal(_) | Self::RobotVia(_) | Self::RobotSays(_) => None,
+        }
+    }
+
     /// Whether it is about nobody who is taken out; it names the others by their new numbers.
     fn without(&mut self, out: &[usize]) -> bool {
         let (Self::Person(person)
@@ -235,9 +303,11 @@ fn unsure(told: &Told) -> Vec<usize> {
         let (who, tells): (Vec<usize>, bool) = match &statement.says {
             Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) => (who.clone(), true),
             Says::Do(deed) => (deed.who.iter().chain(deed.whom.iter().flatten()).copied().collect(), true),
-            Says::Introduce(who) | Says::Noted(who) | Says::RobotSays(_, Some(who)) => (who.clone(), false),
+            Says::Introduce(who) | Says::Noted(who) | Says::Walks(who) | Says::RobotSays(_, Some(who)) => {
+                (who.clone(), false)
+            }
             Says::RobotSays(..)
-            | Says::Then(_)
+            | Says::Then(..)
             | Says::Happens(..)
             | Says::RobotVia(_)
             | Says::GoalThere
@@ -319,7 +389,7 @@ impl Story {
         let elevator = self.place == Some(PlaceClass::Elevator);
         let closed = elevator || self.place == Some(PlaceClass::Room);
         let enters = told.statements.iter().any(|statement| {
-            matches!(&statement.says, Says::Then(Reason { who: None, cue: Cue::Visible, .. }))
+            matches!(&statement.says, Says::Then(Reason { who: None, cue: Cue::Visible, .. }, _))
                 || matches!(&statement.says, Says::RobotGoal(class) if Some(*class) == self.place)
         });
         let comes_in =
@@ -340,6 +410,27 @@ impl Story {
         for person in self.people.iter_mut().filter(|person| open && person.relation == Some(Relation::Staying)) {
             person.relation = Some(Relation::Static);
         }
+    }
+
+    /// Those of whom nothing says how they stand to the robot's way, where of others something does; and anybody at all among
+    /// others who have a role. Mostly something that tells of them was not made out.
+    fn unplaced(&self) -> People {
+        let placed = |person: &Person| {
+            let comes = |step: &Step| step.act == Act::Follow;
+            let group = |other: &&Person| person.group.is_some() && other.group == person.group;
+            person.relation.is_some()
+                || person.steps.iter().any(comes)
+                || self.people.iter().filter(group).any(|other| other.relation.is_some())
+        };
+        let anybody = |person: &Person| ANYBODY.contains(&person.role.as_str());
+        let any_placed = self.people.iter().any(|person| person.relation.is_some());
+        let any_role = self.people.iter().any(|person| !anybody(person));
+        let less = |person: &Person| {
+            any_placed && !placed(person)
+                || any_role && anybody(person)
+                || person.relation.is_none() && person.steps.is_empty() && self.people.len() > 1
+        };
+        self.people.iter().enumerate().filter(|(_, person)| less(person)).map(|(at, _)| at).collect()
     }
 
     /// Takes people out, and numbers the others anew.

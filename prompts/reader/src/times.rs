@@ -203,7 +203,7 @@ impl Maker<'_> {
         let own = self.found.get(start..).unwrap_or_default();
         let any = own.iter().any(|own| !matches!(own.says, Says::NotRead));
         let done = own.iter().any(|own| matches!(own.says, Says::Do(_)));
-        let then = own.iter().any(|own| matches!(own.says, Says::Then(_)));
+        let then = own.iter().any(|own| matches!(own.says, Says::Then(..)));
         // Whoever is met is met as the robot comes by: such a reason holds of where somebody comes from as well.
         let met = when.iter().all(|reason| !matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed));
         let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
