@@ -43,7 +43,7 @@ fn main() {
                 "location": case.on, "social_context": "", "task": "Deliver mail", "rough_scenario": case.text,
             }));
             let Ok(request) = request else { continue };
-            let reading = socrates_offline::understood(&request, location);
+            let reading = socrates_offline::understood(&request, location, socrates_model::ReadBy::Grammar);
             let facts: Vec<String> = facts(&reading).into_iter().collect();
             println!("{:016x}\t{}\t{}", hash(&case.text), !reading.problems.is_empty(), facts.join(";"));
         }

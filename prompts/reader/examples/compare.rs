@@ -79,6 +79,7 @@ fn new_view(read: &Read) -> View {
         let n = at + 1;
         facts.insert(format!("{n} role {}", person.role));
         facts.extend(person.relation.map(|relation| format!("{n} {}", relation.name())));
+        facts.extend(person.crosses.then(|| format!("{n} crossing")));
         if let Some(group) = person.group {
             groups.entry(group).or_default().push(n.to_string());
         }

@@ -171,7 +171,10 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
     let (number, mut end) = match number {
         Some(number) => (number, at + 1),
         None if token.is(Sort::Indefinite)
-            && tokens.get(at + 1).is_some_and(|next| words.meters.contains_key(&next.lemma)) =>
+            && tokens.get(at + 1).is_some_and(|next| {
+                let secs = words.seconds.contains_key(&next.lemma) && !words.ordinals.contains_key(&next.lemma);
+                words.meters.contains_key(&next.lemma) || secs
+            }) =>
         {
             (1.0, at + 1)
         }

@@ -334,6 +334,7 @@ impl Cast {
             for_s: deed.for_s,
             says,
             obeys: deed.obeys,
+            then: deed.then,
         };
         self.done = Some(deed.clone());
         deed
@@ -356,6 +357,6 @@ const fn sign_for(act: Act) -> Option<Gesture> {
         Act::StandStill | Act::Block => Some(Gesture::Wait),
         Act::Follow | Act::Approach => Some(Gesture::FollowMe),
         Act::Navigate => Some(Gesture::Proceed),
-        Act::Look | Act::TurnBack | Act::Sign => None,
+        Act::Look | Act::Startle | Act::TurnBack | Act::Sign => None,
     }
 }

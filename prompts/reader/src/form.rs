@@ -9,7 +9,10 @@ use socrates_model::form::{Deed as FormDeed, Form, FormGroup, FormHuman, Pace, P
 use crate::cast::People;
 use crate::rows::{Act, Cue};
 use crate::statement::Reason;
-use crate::story::{Person, Step, Story, amount_of, name};
+use crate::story::{Person, Step, Story, name};
+
+/// Whoever is startled looks at the robot for so long, s.
+const STARTLED_S: f64 = 8.0;
 
 impl Story {
     /// The story as a form. How somebody stands to the robot's way, where the text leaves it open, is `frontal`, or `static` for
@@ -58,7 +61,7 @@ fn form_step(step: &Step) -> FormStep {
     let act = match (step.act, step.whom) {
         (Act::GiveWay, _) => Some(FormDeed::GiveWay),
         (Act::Block, _) => Some(FormDeed::Block),
-        (Act::Look, _) => Some(FormDeed::LookAtRobot),
+        (Act::Look | Act::Startle, _) => Some(FormDeed::LookAtRobot),
         (Act::StandStill, _) => Some(FormDeed::StandStill),
         (Act::RunAway, _) => Some(FormDeed::RunAway),
         (Act::Approach, _) => Some(FormDeed::Approach),
@@ -71,7 +74,7 @@ fn form_step(step: &Step) -> FormStep {
     FormStep {
         when: step.when.iter().map(form_when).collect(),
         act,
-        for_s: step.for_s,
+        for_s: step.for_s.or_else(|| (step.act == Act::Startle).then_some(STARTLED_S)),
         until: step.until.iter().map(form_when).collect(),
         say: step.says,
         ..FormStep::default()
@@ -79,7 +82,7 @@ fn form_step(step: &Step) -> FormStep {
 }
 
 fn form_when(reason: &Reason<People>) -> When {
-    let amount = amount_of(reason);
+    let amount = reason.usual_amount();
     let speaker = reason.who.as_ref().and_then(|who| who.first().copied());
     match (reason.cue, reason.sign, speaker) {
         (Cue::Visible, ..) => When::RobotVisible(amount),

@@ -1,9 +1,9 @@
-//! The reader of requests: text to statements to a form, and to the reading that the solver takes. No map, no catalog of cards, no geometry, no weights.
+//! The reader of requests: text to statements to a form. No map, no catalog of cards, no geometry, no weights.
 //!
 //! ```text
 //! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story ─► form
 //!         lex       normalize    chunk     sentence        clause_says   discourse    story    form
-//!         words     scopes       phrase    subject         times         cast           │      reading
+//!         words     scopes       phrase    subject         times         cast           │
 //!                   rewrites     name      predicate       maker                        └─► account: what became of every word
 //!                                places    find: rows of frames, signs
 //! ```
@@ -55,8 +55,6 @@ mod story;
 mod form;
 
 mod account;
-
-mod reading;
 
 mod passes;
 

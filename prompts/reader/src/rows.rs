@@ -14,6 +14,8 @@ pub enum Act {
     Block,
     /// Looks at the robot.
     Look,
+    /// Looks at it because it is startled: at first sight, and for longer.
+    Startle,
     /// Stands still.
     StandStill,
     /// Hurries away.
@@ -37,7 +39,7 @@ impl Act {
         match self {
             Self::GiveWay => "give_way",
             Self::Block => "block",
-            Self::Look => "look_at_robot",
+            Self::Look | Self::Startle => "look_at_robot",
             Self::StandStill => "stand_still",
             Self::RunAway => "run_away",
             Self::Approach => "approach",

@@ -94,6 +94,8 @@ pub struct Deed<W> {
     pub ongoing: bool,
     /// Whether it is what was asked for just before: `does so`.
     pub obeys: bool,
+    /// Whether it comes after what was told before: `and then`.
+    pub then: bool,
 }
 
 impl<W> Deed<W> {
@@ -111,6 +113,7 @@ impl<W> Deed<W> {
             for_s: None,
             says: None,
             obeys: false,
+            then: false,
         }
     }
 }

@@ -14,10 +14,13 @@ use crate::statement::{Deed, Reason, Says};
 /// Distances at which a reason holds of which the text gives none, m: seen, near, in the way. As the offline author's.
 const DISTANCES_M: [(Cue, f64); 3] = [(Cue::Visible, 5.0), (Cue::Near, 3.0), (Cue::Blocking, 2.0)];
 
-/// The distance or time of a reason, m or s, as said or as usual.
-pub(crate) fn amount_of(reason: &Reason<People>) -> f64 {
-    let usual = DISTANCES_M.iter().find(|(cue, _)| *cue == reason.cue).map_or(0.0, |(_, usual)| *usual);
-    reason.amount.unwrap_or(usual)
+impl<W> Reason<W> {
+    /// Its distance or time, m or s, as said, or as is usual where the text gives none.
+    #[must_use]
+    pub fn usual_amount(&self) -> f64 {
+        let usual = DISTANCES_M.iter().find(|(cue, _)| *cue == self.cue).map_or(0.0, |(_, usual)| *usual);
+        self.amount.unwrap_or(usual)
+    }
 }
 
 /// One step of somebody.
@@ -35,6 +38,8 @@ pub struct Step {
     pub for_s: Option<f64>,
     /// A sign made with it.
     pub says: Option<Gesture>,
+    /// Whether it comes after the step before it: `and then`.
+    pub then: bool,
 }
 
 /// One person as read.
@@ -44,6 +49,8 @@ pub struct Person {
     pub role: String,
     /// How they stand to the robot's way, where that is said.
     pub relation: Option<Relation>,
+    /// Whether they cross the robot's way once they have come out.
+    pub crosses: bool,
     /// On which side.
     pub side: Option<Side>,
     /// How fast they walk, m/s.
@@ -239,7 +246,10 @@ impl Line {
         match self {
             Self::Relation(person, relation) => {
                 let own = story.people.get(*person).and_then(|person| person.relation);
-                own == Some(*relation) || own.is_some() && *relation == Relation::Static
+                let crosses = story.people.get(*person).is_some_and(|person| person.crosses);
+                own == Some(*relation)
+                    || own.is_some() && *relation == Relation::Static
+                    || crosses && *relation == Relation::Crossing
             }
             Self::RobotStart(class) => story.robot_start == Some(*class),
             Self::RobotGoal(class) => story.robot_goal == Some(*class),
@@ -255,7 +265,8 @@ impl Line {
     }
 
     /// Of whom it tells.
-    pub(crate) const fn person(&self) -> Option<usize> {
+    #[must_use]
+    pub const fn person(&self) -> Option<usize> {
         match self {
             Self::Person(person)
             | Self::Relation(person, _)
@@ -354,10 +365,12 @@ impl Story {
             // What is said first holds: `stands in the corridor and crosses it then` does not happen at once.
             let follows = relation == Relation::Behind;
             let stands = person.relation.is_none() || person.relation == Some(Relation::Static) && !follows;
-            // Whoever comes out and crosses is met as they cross.
-            let crosses = person.relation == Some(Relation::Leaving) && relation == Relation::Crossing
-                || person.relation == Some(Relation::Staying) && relation == Relation::Leaving;
-            if stands || crosses {
+            // Whoever comes out and crosses does both.
+            let both = [Some(Relation::Leaving), Some(Relation::Crossing)];
+            if both.contains(&person.relation) && both.contains(&Some(relation)) && person.relation != Some(relation) {
+                (person.relation, person.crosses) = (Some(Relation::Leaving), true);
+            }
+            if stands || person.relation == Some(Relation::Staying) && relation == Relation::Leaving {
                 person.relation = Some(relation);
             }
         });
@@ -490,6 +503,7 @@ impl Story {
             until: deed.until.clone(),
             for_s: deed.for_s,
             says: deed.says,
+            then: deed.then,
         };
         self.each(&deed.who, |person| {
             // Somebody of whom nothing else is known stands there from the start.
@@ -536,6 +550,9 @@ impl fmt::Display for Story {
             if let Some(relation) = person.relation {
                 let side = person.side.map_or_else(String::new, |side| format!(" {}", side.name()));
                 writeln!(f, "{name}: {}{side}", relation.name())?;
+            }
+            if person.crosses {
+                writeln!(f, "{name}: {}", Relation::Crossing.name())?;
             }
             if let Some(group) = person.group {
                 writeln!(f, "{name}: group {group}")?;

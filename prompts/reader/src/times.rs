@@ -6,7 +6,7 @@ use crate::clause::{Clause, Condition, Join, Predicate, Tie};
 use crate::maker::Maker;
 use crate::noun::{Head, Noun, Pick};
 use crate::parser::names_somebody;
-use crate::rows::{Act, Cue, Frame};
+use crate::rows::{Act, Cue, Frame, Part};
 use crate::statement::{Deed, Named, Reason, Says};
 
 /// When something begins and ends, and the tokens that say so.
@@ -65,6 +65,7 @@ impl Whole<'_> {
             for_s: clause.lasts_s.map(|secs| secs.value),
             says: said.sign,
             obeys: frame.obeys,
+            then: clause.join == Join::Then,
         }
     }
 }
@@ -88,8 +89,12 @@ impl Maker<'_> {
             let found = self.reason(condition, &clause.subject);
             self.introduce(&condition.clause);
             if found.is_some() {
+                // `as the robot comes to the intersection` tells where it is then; `as it wants to get in`, where it goes.
+                let part = |act: &Predicate| {
+                    self.lexicon.frames.get(act.row).is_some_and(|frame| frame.part == Some(Part::There))
+                };
                 let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
-                self.places(&condition.clause, robot);
+                self.places(&condition.clause, robot && condition.clause.acts.iter().any(part));
                 self.rest(&condition.clause);
             }
             let (reason, tokens) = found.map_or((None, Vec::new()), |(reason, tokens)| (Some(reason), tokens));
@@ -154,7 +159,10 @@ impl Maker<'_> {
                 return Some((Reason { who, cue: Cue::Says, sign: act.sign, ..none }, tokens));
             }
             let about = act.object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_)));
-            let cue = if by_robot { frame.robot_cue } else { frame.cue.filter(|_| about) };
+            // `while the robot drives along`: as long as it moves.
+            let drives = frame.plain && frame.goes && condition.tie == Tie::While;
+            let cue =
+                if by_robot { frame.robot_cue.or(drives.then_some(Cue::Moving)) } else { frame.cue.filter(|_| about) };
             if let Some(cue) = cue {
                 return Some((Reason { cue, ..none }, tokens));
             }
