@@ -188,6 +188,13 @@ pub fn understood(request: &Request, location: &Location, by: ReadBy) -> Reading
     understand::understand(request, location, by).reading
 }
 
+/// What each pass of the small reader makes of a rough scenario, a line for each thing: tokens, background, chunks, clauses, statements, the
+/// story, and the pieces that are not in it.
+#[must_use]
+pub fn passes(rough: &str) -> String {
+    socrates_reader::Reader::shipped().passes(rough).to_string()
+}
+
 /// What a text was read as ([`read`]), as the tables of a form: it can stand under the text in the request, be corrected there, and then wins
 /// over it. How somebody stands to the robot's way, where the text leaves it open, is chosen as the author would.
 #[must_use]

@@ -18,6 +18,7 @@ use crate::aside;
 use crate::cast::Person;
 use crate::deed::{self, Around};
 use crate::lexicon::Act;
+use crate::order;
 use crate::story::Story;
 use crate::understand::Understood;
 
@@ -50,6 +51,10 @@ impl Telling<'_> {
         story.robot_says = signs
             .map(|sign| (*sign, self.quote(|line| *line == Line::RobotSays(*sign))))
             .collect::<Vec<(Gesture, String)>>();
+        for who in &told.robot_first {
+            let quote = self.quote(|line| *line == Line::RobotFirst(*who));
+            order::state(&mut story.order, (AgentId::Robot, AgentId::Human(human_id(*who))), false, &quote);
+        }
         for class in &told.robot_via {
             let quote = self.quote(|line| *line == Line::RobotVia(*class));
             story.cast.leave_out(&quote, "what the robot's way leads past is said by its task, or by `via` of a form");
@@ -63,12 +68,24 @@ impl Telling<'_> {
         at.and_then(|at| self.text.get(at)).unwrap_or_default().to_owned()
     }
 
+    /// Whether the words that say how somebody stands to the robot's way are those of a step of theirs.
+    fn is_step_of(&self, who: usize, act: Said) -> bool {
+        let at =
+            |wanted: &dyn Fn(&Line) -> bool| self.read.lines.iter().find(|(line, _)| wanted(line)).map(|(_, at)| at);
+        let relation = at(&|line| matches!(line, Line::Relation(own, _) if *own == who));
+        let steps = self.read.story.people.get(who).map_or(&[][..], |person| &person.steps);
+        let numbers = (0..steps.len()).filter(|number| steps.get(*number).is_some_and(|step| step.act == act));
+        relation.is_some() && numbers.into_iter().any(|number| at(&|line| *line == Line::Step(who, number)) == relation)
+    }
+
     fn person(&self, story: &mut Story, who: usize) {
         let Some(person) = self.read.story.people.get(who) else { return };
         // Whoever blocks the robot and of whom no more is said may come from anywhere.
         let said = self.quote(|line| matches!(line, Line::Relation(own, _) if *own == who));
         let blocks = person.steps.first().is_some_and(|step| step.act == Said::Block);
-        if let Some(relation) = person.relation.filter(|_| !said.is_empty() || !blocks) {
+        // Whoever follows is behind by that alone.
+        let follows = person.relation == Some(Relation::Behind) && self.is_step_of(who, Said::Follow);
+        if let Some(relation) = person.relation.filter(|_| !follows && (!said.is_empty() || !blocks)) {
             let grouped = person.group.is_some();
             let quote = self.quote(|line| *line == Line::Relation(who, relation));
             let quote = if quote.is_empty() { self.quote(|line| line.person() == Some(who)) } else { quote };
@@ -126,7 +143,10 @@ impl Telling<'_> {
             quote,
             ..Around::default()
         };
-        let made = deed::apply(&mut story.cast, who, act(step.act), &around);
+        // Nobody goes on who has done nothing before: they walk.
+        let walks = step.act == Said::Navigate && when.is_empty() && number == 0;
+        let act = if walks { Act::Walk } else { act(step.act) };
+        let made = deed::apply(&mut story.cast, who, act, &around);
         let rule = made.and_then(|made| story.cast.people.get_mut(who)?.rules.get_mut(made));
         let Some(read) = rule else { return };
         read.rule.when.extend(when.iter().skip(1).map(trigger));

@@ -122,6 +122,7 @@ impl Fate {
             | Says::Do(_)
             | Says::RobotSays(Some(_), _)
             | Says::Then(..)
+            | Says::RobotFirst(_)
             | Says::Goes
             | Says::Happens(..)
             | Says::There

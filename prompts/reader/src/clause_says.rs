@@ -252,6 +252,10 @@ impl Maker<'_> {
             self.say(tokens, says);
             return;
         }
+        if frame.robot_first && !act.not && person.is_none() {
+            self.say(tokens, Says::RobotFirst(None));
+            return;
+        }
         let cue = frame.robot_cue.filter(|_| !act.not);
         // `the robot meets a nurse head-on`
         let others = || whole.clause.acts.iter().filter_map(|act| act.object.clone()).filter(Noun::may_be_person);

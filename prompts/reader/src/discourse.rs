@@ -60,6 +60,7 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
             Says::Introduce(_)
             | Says::RobotSays(..)
             | Says::Then(..)
+            | Says::RobotFirst(_)
             | Says::Happens(..)
             | Says::There
             | Says::GoalThere
@@ -102,6 +103,7 @@ fn people_of(says: &Says<People>) -> &[usize] {
         Says::Do(deed) => &deed.who,
         Says::RobotSays(..)
         | Says::Then(..)
+        | Says::RobotFirst(_)
         | Says::Happens(..)
         | Says::There
         | Says::GoalThere
@@ -213,6 +215,7 @@ impl Cast {
                 self.signed = None;
                 Says::Then(reason, *waits)
             }
+            Says::RobotFirst(_) => Says::RobotFirst(Some(self.last.clone())),
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,
             Says::GoalThere => Says::GoalThere,

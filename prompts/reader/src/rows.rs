@@ -131,6 +131,8 @@ pub(crate) struct Frame {
     pub(crate) unplayed: Option<String>,
     /// Whether it says how somebody moves, and no more than another phrase beside it: `walks`.
     pub(crate) plain: bool,
+    /// Whether the robot meets those of whom is spoken before they do anything more: `goes first`.
+    pub(crate) robot_first: bool,
     /// Whether the robot drives by it: to where it ends, from where it begins.
     pub(crate) goes: bool,
     /// What a place in it is for the robot: `leaves the ward`, `reaches the exit`.

@@ -45,6 +45,8 @@ pub enum Says<W> {
     Do(Deed<W>),
     /// The robot makes a sign, to somebody.
     RobotSays(Option<Gesture>, Option<W>),
+    /// The robot is there before somebody, mostly those of whom is spoken.
+    RobotFirst(Option<W>),
     /// Something happens to which people may react from then on; whether it is a condition, for which somebody has to wait.
     Then(Reason<W>, bool),
     /// Where it happens; the number ranks it: people are there (3), it stands alone (2), the robot is there (1).

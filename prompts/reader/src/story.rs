@@ -74,6 +74,8 @@ pub struct Story {
     pub robot_goal: Option<PlaceClass>,
     /// What it leads past.
     pub robot_via: Vec<PlaceClass>,
+    /// Those before whom the robot is there.
+    pub robot_first: People,
     /// Signs that the robot makes.
     pub robot_says: Vec<Gesture>,
 }
@@ -101,6 +103,8 @@ pub enum Line {
     RobotGoal(PlaceClass),
     /// What it leads past.
     RobotVia(PlaceClass),
+    /// The robot is there before somebody.
+    RobotFirst(usize),
     /// The robot makes a sign.
     RobotSays(Gesture),
 }
@@ -203,6 +207,12 @@ impl Teller {
                 }
                 lines.push(Line::Place(*class));
             }
+            Says::RobotFirst(who) => {
+                let who = who.iter().flatten().copied();
+                let new: People = who.filter(|person| !story.robot_first.contains(person)).collect();
+                lines.extend(new.iter().map(|person| Line::RobotFirst(*person)));
+                story.robot_first.extend(new);
+            }
             Says::There => self.there = true,
             Says::GoalThere => self.goal_there = true,
             Says::RobotVia(class) => {
@@ -227,6 +237,7 @@ impl Teller {
             Says::Group(_)
             | Says::RobotSays(None, _)
             | Says::Then(..)
+            | Says::RobotFirst(_)
             | Says::Background(_)
             | Says::NotPlayed(_)
             | Says::Goes
@@ -260,6 +271,7 @@ impl Line {
             | Self::Step(..)
             | Self::Place(_)
             | Self::RobotVia(_)
+            | Self::RobotFirst(_)
             | Self::RobotSays(_) => true,
         }
     }
@@ -273,6 +285,7 @@ impl Line {
             | Self::Side(person)
             | Self::Pace(person)
             | Self::Group(person)
+            | Self::RobotFirst(person)
             | Self::Step(person, _) => Some(*person),
             Self::Place(_) | Self::RobotStart(_) | Self::RobotGoal(_) | Self::RobotVia(_) | Self::RobotSays(_) => None,
         }
@@ -285,6 +298,7 @@ impl Line {
         | Self::Side(person)
         | Self::Pace(person)
         | Self::Group(person)
+        | Self::RobotFirst(person)
         | Self::Step(person, _)) = self
         else {
             return true;
@@ -319,6 +333,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             }
             Says::RobotSays(..)
             | Says::Then(..)
+            | Says::RobotFirst(_)
             | Says::Happens(..)
             | Says::RobotVia(_)
             | Says::GoalThere
@@ -454,6 +469,7 @@ impl Story {
             number += 1;
             !out.contains(&(number - 1))
         });
+        self.robot_first = self.robot_first.iter().filter(|person| !out.contains(person)).copied().map(anew).collect();
         for step in self.people.iter_mut().flat_map(|person| &mut person.steps) {
             step.whom = step.whom.map(anew);
             for reason in step.when.iter_mut().chain(&mut step.until) {
@@ -543,6 +559,9 @@ impl fmt::Display for Story {
         }
         for gesture in &self.robot_says {
             writeln!(f, "robot: says {gesture}")?;
+        }
+        for person in &self.robot_first {
+            writeln!(f, "robot: before {}", name(*person))?;
         }
         for (number, person) in self.people.iter().enumerate() {
             let name = name(number);
