@@ -143,10 +143,7 @@ impl Telling<'_> {
             quote,
             ..Around::default()
         };
-        // Nobody goes on who has done nothing before: they walk.
-        let walks = step.act == Said::Navigate && when.is_empty() && number == 0;
-        let act = if walks { Act::Walk } else { act(step.act) };
-        let made = deed::apply(&mut story.cast, who, act, &around);
+        let made = deed::apply(&mut story.cast, who, act(step.act), &around);
         let rule = made.and_then(|made| story.cast.people.get_mut(who)?.rules.get_mut(made));
         let Some(read) = rule else { return };
         read.rule.when.extend(when.iter().skip(1).map(trigger));

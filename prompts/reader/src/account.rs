@@ -12,10 +12,11 @@ use unicode_segmentation::UnicodeSegmentation as _;
 use crate::cast::People;
 use crate::clause::Clause;
 use crate::discourse::Told;
+use crate::line::Line;
 use crate::normalize::Scene;
 use crate::rows::{Act, Cue};
 use crate::statement::{Reason, Says};
-use crate::story::{Line, Story, Telling};
+use crate::story::{Story, Telling};
 
 /// Why what was said of somebody is not in the story.
 const ONE_WAY: &str =

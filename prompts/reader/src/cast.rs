@@ -233,7 +233,9 @@ impl Cast {
                 && noun.ordinal.is_none()
                 && !(noun.pick == Pick::Others && base.len() == 1) =>
             {
-                if noun.count.is_some_and(|count| usize::try_from(count) != Ok(base.len())) {
+                // `a nurse comes towards the robot, and the two meet`: the robot is one of them.
+                let with_robot = base.len() == 1 && noun.count == Some(2);
+                if !with_robot && noun.count.is_some_and(|count| usize::try_from(count) != Ok(base.len())) {
                     self.doubts.push(noun.tokens.clone());
                 }
                 base

@@ -213,7 +213,7 @@ impl Maker<'_> {
             self.say(tokens, Says::NotRead);
         } else if relation.is_none() && !frame.group {
             // What is denied, or says no more than that somebody is there.
-            let walks = frame.plain && frame.goes && !act.not && act.object.is_none() && whole.clause.places.is_empty();
+            let walks = frame.plain && frame.goes && !act.not && act.object.is_none();
             self.say(tokens, if walks { Says::Walks(who) } else { Says::Noted(who) });
         }
     }

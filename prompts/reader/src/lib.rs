@@ -50,7 +50,9 @@ mod clause_says;
 mod cast;
 mod discourse;
 
+mod line;
 mod story;
+mod told;
 
 mod form;
 
@@ -64,10 +66,11 @@ pub use account::{Fate, Piece, Read, Verdict};
 pub use cast::People;
 pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};
+pub use line::Line;
 pub use passes::Passes;
 pub use rows::{Act, Cue};
 pub use statement::{Deed, Reason, Says, Statement};
-pub use story::{Line, Person, Step, Story};
+pub use story::{Person, Step, Story};
 
 /// A reader with its rows.
 #[derive(Debug, Default)]

@@ -1,13 +1,13 @@
 //! Pass 7: statements of people to a story, and the story as a form.
 
 use std::collections::BTreeSet;
-use std::fmt;
 use std::ops::Range;
 
 use socrates_model::{Gesture, PlaceClass, Relation, Side};
 
 use crate::cast::{ANYBODY, People};
 use crate::discourse::Told;
+use crate::line::Line;
 use crate::rows::{Act, Cue};
 use crate::statement::{Deed, Reason, Says};
 
@@ -80,35 +80,6 @@ pub struct Story {
     pub robot_says: Vec<Gesture>,
 }
 
-/// What a story states, by people's numbers from 0; whatever a text says of it has the words that say it.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Line {
-    /// Somebody is there.
-    Person(usize),
-    /// How somebody stands to the robot's way.
-    Relation(usize, Relation),
-    /// On which side.
-    Side(usize),
-    /// How fast somebody walks.
-    Pace(usize),
-    /// Somebody is in a group.
-    Group(usize),
-    /// Somebody's step, by its number from 0.
-    Step(usize, usize),
-    /// Where it happens.
-    Place(PlaceClass),
-    /// Where the robot's way begins.
-    RobotStart(PlaceClass),
-    /// Where it ends.
-    RobotGoal(PlaceClass),
-    /// What it leads past.
-    RobotVia(PlaceClass),
-    /// The robot is there before somebody.
-    RobotFirst(usize),
-    /// The robot makes a sign.
-    RobotSays(Gesture),
-}
-
 /// A story with what says each line of it, and what of the statements is not in it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Telling {
@@ -138,7 +109,7 @@ pub(crate) fn story(told: &Told) -> Telling {
     let mut telling = Telling { story, lost: unsaid, ..Telling::default() };
     for (number, mut line, tokens) in lines {
         let named = matches!(line, Line::Person(_));
-        if line.without(&out) && line.holds(&telling.story) {
+        if line.without(&out) && telling.story.holds(&line) {
             telling.lines.push((line, tokens));
         } else if !named {
             telling.lost.insert(number);
@@ -237,7 +208,6 @@ impl Teller {
             Says::Group(_)
             | Says::RobotSays(None, _)
             | Says::Then(..)
-            | Says::RobotFirst(_)
             | Says::Background(_)
             | Says::NotPlayed(_)
             | Says::Goes
@@ -248,64 +218,6 @@ impl Teller {
             lines.extend((before..now).map(|step| Line::Step(person, step)));
         }
         self.lines.extend(lines.into_iter().map(|line| (number, line, tokens.clone())));
-    }
-}
-
-impl Line {
-    /// Whether a story says so. Somebody who stands there and then walks, or is inside, stood there as well.
-    fn holds(&self, story: &Story) -> bool {
-        match self {
-            Self::Relation(person, relation) => {
-                let own = story.people.get(*person).and_then(|person| person.relation);
-                let crosses = story.people.get(*person).is_some_and(|person| person.crosses);
-                own == Some(*relation)
-                    || own.is_some() && *relation == Relation::Static
-                    || crosses && *relation == Relation::Crossing
-            }
-            Self::RobotStart(class) => story.robot_start == Some(*class),
-            Self::RobotGoal(class) => story.robot_goal == Some(*class),
-            Self::Person(_)
-            | Self::Side(_)
-            | Self::Pace(_)
-            | Self::Group(_)
-            | Self::Step(..)
-            | Self::Place(_)
-            | Self::RobotVia(_)
-            | Self::RobotFirst(_)
-            | Self::RobotSays(_) => true,
-        }
-    }
-
-    /// Of whom it tells.
-    #[must_use]
-    pub const fn person(&self) -> Option<usize> {
-        match self {
-            Self::Person(person)
-            | Self::Relation(person, _)
-            | Self::Side(person)
-            | Self::Pace(person)
-            | Self::Group(person)
-            | Self::RobotFirst(person)
-            | Self::Step(person, _) => Some(*person),
-            Self::Place(_) | Self::RobotStart(_) | Self::RobotGoal(_) | Self::RobotVia(_) | Self::RobotSays(_) => None,
-        }
-    }
-
-    /// Whether it is about nobody who is taken out; it names the others by their new numbers.
-    fn without(&mut self, out: &[usize]) -> bool {
-        let (Self::Person(person)
-        | Self::Relation(person, _)
-        | Self::Side(person)
-        | Self::Pace(person)
-        | Self::Group(person)
-        | Self::RobotFirst(person)
-        | Self::Step(person, _)) = self
-        else {
-            return true;
-        };
-        let stays = !out.contains(person);
-        *person -= out.iter().filter(|gone| **gone < *person).count();
-        stays
     }
 }
 
@@ -373,6 +285,30 @@ fn unsure(told: &Told) -> Vec<usize> {
 }
 
 impl Story {
+    /// Whether it says so. Somebody who stands there and then walks, or is inside, stood there as well.
+    fn holds(&self, line: &Line) -> bool {
+        match line {
+            Line::Relation(person, relation) => {
+                let own = self.people.get(*person).and_then(|person| person.relation);
+                let crosses = self.people.get(*person).is_some_and(|person| person.crosses);
+                own == Some(*relation)
+                    || own.is_some() && *relation == Relation::Static
+                    || crosses && *relation == Relation::Crossing
+            }
+            Line::RobotStart(class) => self.robot_start == Some(*class),
+            Line::RobotGoal(class) => self.robot_goal == Some(*class),
+            Line::Person(_)
+            | Line::Side(_)
+            | Line::Pace(_)
+            | Line::Group(_)
+            | Line::Step(..)
+            | Line::Place(_)
+            | Line::RobotVia(_)
+            | Line::RobotFirst(_)
+            | Line::RobotSays(_) => true,
+        }
+    }
+
     fn relate(&mut self, who: &[usize], relation: Option<Relation>, side: Option<Side>) {
         self.each(who, |person| {
             person.side = side.or(person.side);
@@ -541,79 +477,4 @@ impl Story {
 /// `human_1` of the first.
 pub(crate) fn name(number: usize) -> String {
     format!("human_{}", number + 1)
-}
-
-impl fmt::Display for Story {
-    /// One fact a line: `human_1: give_way when says EXCUSE_ME`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(place) = self.place {
-            writeln!(f, "place: {place}")?;
-        }
-        for (what, class) in [("start", self.robot_start), ("goal", self.robot_goal)] {
-            if let Some(class) = class {
-                writeln!(f, "robot: {what} {class}")?;
-            }
-        }
-        for class in &self.robot_via {
-            writeln!(f, "robot: via {class}")?;
-        }
-        for gesture in &self.robot_says {
-            writeln!(f, "robot: says {gesture}")?;
-        }
-        for person in &self.robot_first {
-            writeln!(f, "robot: before {}", name(*person))?;
-        }
-        for (number, person) in self.people.iter().enumerate() {
-            let name = name(number);
-            writeln!(f, "{name}: {}", person.role)?;
-            if let Some(relation) = person.relation {
-                let side = person.side.map_or_else(String::new, |side| format!(" {}", side.name()));
-                writeln!(f, "{name}: {}{side}", relation.name())?;
-            }
-            if person.crosses {
-                writeln!(f, "{name}: {}", Relation::Crossing.name())?;
-            }
-            if let Some(group) = person.group {
-                writeln!(f, "{name}: group {group}")?;
-            }
-            if let Some(mps) = person.pace_mps {
-                writeln!(f, "{name}: pace {mps}")?;
-            }
-            for step in &person.steps {
-                writeln!(f, "{name}: {step}")?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for Step {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.whom.filter(|_| self.act == Act::Follow) {
-            Some(whom) => write!(f, "follow {}", name(whom))?,
-            None => f.write_str(self.act.name())?,
-        }
-        if let Some(gesture) = self.says {
-            write!(f, " {gesture}")?;
-        }
-        for (word, reasons) in [("when", &self.when), ("until", &self.until)] {
-            for reason in reasons {
-                write!(f, " {word} {reason}")?;
-            }
-        }
-        self.for_s.map_or(Ok(()), |secs| write!(f, " for {secs}"))
-    }
-}
-
-impl fmt::Display for Reason<People> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", format!("{:?}", self.cue).to_lowercase())?;
-        if let Some(who) = self.who.as_ref().and_then(|who| who.first()) {
-            write!(f, " {}", name(*who))?;
-        }
-        if let Some(sign) = self.sign {
-            write!(f, " {sign}")?;
-        }
-        self.amount.map_or(Ok(()), |amount| write!(f, " {amount}"))
-    }
 }

@@ -3,7 +3,7 @@
 use crate::chunk::{Chunk, Is};
 use crate::clause::{Clause, Predicate};
 use crate::noun::{Head, Noun, Pick};
-use crate::parser::{Parser, names_somebody, says_nothing};
+use crate::parser::{Parser, names_somebody};
 use crate::token::{Bent, Mark, OWNS, Sort};
 
 impl Parser<'_> {
@@ -40,11 +40,7 @@ impl Parser<'_> {
         } else if by && clause.acts.iter().any(|act| act.passive) {
             clause.agent = Some(noun);
         } else {
-            // `stands beside him`, `comes round it`: names nobody anew, and says no more than the word before it.
-            let behind = self.at.checked_sub(2).and_then(|at| self.chunks.get(at));
-            let behind =
-                behind.is_some_and(|before| before.is == Is::Word && says_nothing(before) && !before.word(Sort::And));
-            if noun.reflexive || behind && noun.head == Head::It {
+            if noun.reflexive {
                 clause.goes.push(noun.tokens.clone());
             } else if !with {
                 clause.left.extend(noun.tokens.clone());

@@ -162,7 +162,7 @@ impl Maker<'_> {
             // `while the robot drives along`: as long as it moves.
             let drives = frame.plain && frame.goes && condition.tie == Tie::While;
             let cue =
-                if by_robot { frame.robot_cue.or(drives.then_some(Cue::Moving)) } else { frame.cue.filter(|_| about) };
+                if by_robot { frame.robot_cue.or_else(|| drives.then_some(Cue::Moving)) } else { frame.cue.filter(|_| about) };
             if let Some(cue) = cue {
                 return Some((Reason { cue, ..none }, tokens));
             }

@@ -32,6 +32,10 @@ fn shipped_requests_are_read_as_by_the_grammar() {
             let [grammar, small] = [ReadBy::Grammar, ReadBy::Small].map(|by| read_by(&request, &map, by));
             assert_eq!(kinds(&small), kinds(&grammar), "{location}/{name}");
             assert_eq!(small.pattern, grammar.pattern, "{location}/{name}");
+            let told = |reading: &Reading| -> Vec<_> {
+                reading.humans.iter().map(|human| (human.role.clone(), human.relation, human.rules.clone())).collect()
+            };
+            assert_eq!(told(&small), told(&grammar), "{location}/{name}");
             read += 1;
         }
     }
