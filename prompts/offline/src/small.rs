@@ -89,7 +89,10 @@ impl Telling<'_> {
             let grouped = person.group.is_some();
             let quote = self.quote(|line| *line == Line::Relation(who, relation));
             let quote = if quote.is_empty() { self.quote(|line| line.person() == Some(who)) } else { quote };
-            let place = self.read.story.place.filter(|class| matches!(class, PlaceClass::Room | PlaceClass::Elevator));
+            let place = person
+                .start
+                .or(self.read.story.place)
+                .filter(|class| matches!(class, PlaceClass::Room | PlaceClass::Elevator));
             deed::apply(&mut story.cast, who, comes(relation, grouped), &Around { place, quote, ..Around::default() });
         }
         if person.crosses {

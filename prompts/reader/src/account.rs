@@ -111,6 +111,7 @@ impl Fate {
             Says::Happens(class, _) if !part(*class) && !story.robot_via.contains(class) => {
                 (Self::NotPlayed("people meet the robot in one place".to_owned()), 2)
             }
+            Says::From(..) => (Self::Read, 3),
             Says::NotRead | Says::RobotSays(None, _) => (Self::NotRead, 3),
             Says::NotPlayed(why) => (Self::NotPlayed(why.clone()), 2),
             Says::Background(reason) => (Self::Background(*reason), 0),

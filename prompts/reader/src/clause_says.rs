@@ -4,8 +4,8 @@
 //! "the nurse steps aside when it is near" ─► The nurse: give_way when Near
 //! ```
 
-use socrates_model::Relation;
 use socrates_model::statement::Background;
+use socrates_model::{PlaceClass, Relation};
 
 use crate::clause::{At, Clause, Condition, Join, Predicate, Tie};
 use crate::lexicon::Lexicon;
@@ -355,6 +355,15 @@ impl Maker<'_> {
                 Some(class) => Says::Happens(*class, if *to { 1 } else { rank }),
             };
             self.say(tokens.0..tokens.1, says);
+            let leaves =
+                |act: &Predicate| !act.not && frame(act).is_some_and(|frame| frame.relate == Some(Relation::Leaving));
+            if let Some(class @ (PlaceClass::Room | PlaceClass::Elevator)) = class
+                && !robot
+                && number == 0
+                && clause.acts.iter().any(leaves)
+            {
+                self.say(tokens.0..tokens.1, Says::From(clause.subject.clone(), *class));
+            }
         }
     }
 }

@@ -61,6 +61,7 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
             | Says::RobotSays(..)
             | Says::Then(..)
             | Says::RobotFirst(_)
+            | Says::From(..)
             | Says::Happens(..)
             | Says::There
             | Says::GoalThere
@@ -104,6 +105,7 @@ fn people_of(says: &Says<People>) -> &[usize] {
         Says::RobotSays(..)
         | Says::Then(..)
         | Says::RobotFirst(_)
+        | Says::From(..)
         | Says::Happens(..)
         | Says::There
         | Says::GoalThere
@@ -215,6 +217,7 @@ impl Cast {
                 self.signed = None;
                 Says::Then(reason, *waits)
             }
+            Says::From(who, class) => Says::From(self.people(who), *class),
             Says::RobotFirst(_) => Says::RobotFirst(Some(self.last.clone())),
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,

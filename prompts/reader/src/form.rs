@@ -47,7 +47,7 @@ impl Story {
             side: person.side,
             facing: None,
             place: self.place.map(PlaceWord::Class),
-            start: None,
+            start: person.start.map(PlaceWord::Class),
             goal: None,
             pace: person.pace_mps.map(Pace::Mps),
             group: person.group.map(|group| format!("group_{group}")),

@@ -180,6 +180,7 @@ impl fmt::Display for Shown<'_> {
             }
             Says::RobotSays(sign, _) => write!(f, "robot says {sign:?}"),
             Says::Then(reason, _) => write!(f, "then {:?}", reason.cue),
+            Says::From(who, class) => write!(f, "from {class}: {}", spaced(who)),
             Says::RobotFirst(_) => f.write_str("robot is first"),
             Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),
             Says::There => f.write_str("happens there"),

@@ -45,6 +45,8 @@ pub enum Says<W> {
     Do(Deed<W>),
     /// The robot makes a sign, to somebody.
     RobotSays(Option<Gesture>, Option<W>),
+    /// Out of which room or car somebody comes.
+    From(W, PlaceClass),
     /// The robot is there before somebody, mostly those of whom is spoken.
     RobotFirst(Option<W>),
     /// Something happens to which people may react from then on; whether it is a condition, for which somebody has to wait.

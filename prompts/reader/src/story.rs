@@ -49,6 +49,8 @@ pub struct Person {
     pub role: String,
     /// How they stand to the robot's way, where that is said.
     pub relation: Option<Relation>,
+    /// Out of which room or car they come.
+    pub start: Option<PlaceClass>,
     /// Whether they cross the robot's way once they have come out.
     pub crosses: bool,
     /// On which side.
@@ -107,14 +109,25 @@ pub(crate) fn story(told: &Told) -> Telling {
     story.without(&out);
     story.settle(told, there);
     let mut telling = Telling { story, lost: unsaid, ..Telling::default() };
+    let mut lost: Vec<(usize, Range<usize>)> = Vec::new();
     for (number, mut line, tokens) in lines {
         let named = matches!(line, Line::Person(_));
         if line.without(&out) && telling.story.holds(&line) {
             telling.lines.push((line, tokens));
         } else if !named {
-            telling.lost.insert(number);
+            lost.push((number, tokens));
         }
     }
+    // `follows it` puts somebody behind, and they do so all the same.
+    let follows = |line: &Line| {
+        let Line::Step(person, step) = line else { return false };
+        let steps = telling.story.people.get(*person).map_or(&[][..], |person| &person.steps);
+        steps.get(*step).is_some_and(|step| step.act == Act::Follow)
+    };
+    let others = |tokens: &Range<usize>| telling.lines.iter().any(|(line, own)| own == tokens && follows(line));
+    telling
+        .lost
+        .extend(lost.into_iter().filter(|(_, tokens)| !others(tokens)).map(|(number, _)| number).collect::<Vec<_>>());
     let unplaced = telling.story.unplaced();
     for person in unplaced {
         let line = telling.lines.iter().find(|(line, _)| line.person() == Some(person));
@@ -178,6 +191,7 @@ impl Teller {
                 }
                 lines.push(Line::Place(*class));
             }
+            Says::From(who, class) => story.each(who, |person| person.start = Some(*class)),
             Says::RobotFirst(who) => {
                 let who = who.iter().flatten().copied();
                 let new: People = who.filter(|person| !story.robot_first.contains(person)).collect();
@@ -246,6 +260,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             Says::RobotSays(..)
             | Says::Then(..)
             | Says::RobotFirst(_)
+            | Says::From(..)
             | Says::Happens(..)
             | Says::RobotVia(_)
             | Says::GoalThere

@@ -161,8 +161,11 @@ impl Maker<'_> {
             let about = act.object.as_ref().is_none_or(|object| !matches!(object.head, Head::Role(_) | Head::Name(_)));
             // `while the robot drives along`: as long as it moves.
             let drives = frame.plain && frame.goes && condition.tie == Tie::While;
-            let cue =
-                if by_robot { frame.robot_cue.or_else(|| drives.then_some(Cue::Moving)) } else { frame.cue.filter(|_| about) };
+            let cue = if by_robot {
+                frame.robot_cue.or_else(|| drives.then_some(Cue::Moving))
+            } else {
+                frame.cue.filter(|_| about)
+            };
             if let Some(cue) = cue {
                 return Some((Reason { cue, ..none }, tokens));
             }
