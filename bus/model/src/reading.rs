@@ -155,6 +155,8 @@ pub enum ReadBy {
     /// The grammar of the offline author.
     #[default]
     Grammar,
+    /// The small reader of the offline author, whose phrases are rows.
+    Small,
     /// The author, a language model; the grammar was held against what it calls no wish.
     Author,
     /// The author, a language model, in a language that the grammar does not know: nobody held anything against it.
@@ -165,7 +167,7 @@ impl ReadBy {
     /// Whether the author reads the texts, instead of the grammar.
     #[must_use]
     pub const fn is_author(self) -> bool {
-        !matches!(self, Self::Grammar)
+        matches!(self, Self::Author | Self::AuthorAlone)
     }
 
     const fn is_grammar(&self) -> bool {

@@ -39,12 +39,22 @@ pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Resu
     single_or_batch(talk, config, options, vec![prepared]).await
 }
 
-/// Prints how a request is read, and runs nothing; with `write`, puts what was read as a form under the text.
-pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool) -> Result<(), Complaint> {
+/// Prints how a request is read, and runs nothing; with `write`, puts what was read as a form under the text; with `passes`, prints first what
+/// each pass of the small reader makes of the rough scenario, whoever reads it.
+pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool, passes: bool) -> Result<(), Complaint> {
     let prepared = prepare(request, None, config)?;
+    let rough = prepared.request.rough_scenario.as_deref().unwrap_or_default();
+    let passes = passes.then(|| socrates_offline::passes(rough));
+    for line in passes.iter().flat_map(|passes| passes.lines()) {
+        talk.line(line);
+    }
     print_reading(talk, &prepared);
     let form = write.then(|| write_form(talk, request, &prepared)).transpose()?;
-    talk.result(&json!({ "reading": prepared.reading, "form": form }));
+    let mut result = json!({ "reading": prepared.reading, "form": form });
+    if let (Some(passes), Some(members)) = (passes, result.as_object_mut()) {
+        members.insert("passes".to_owned(), json!(passes));
+    }
+    talk.result(&result);
     Ok(())
 }
 

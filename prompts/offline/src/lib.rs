@@ -78,6 +78,7 @@ mod relation;
 mod robot_deed;
 mod short;
 mod sides;
+mod small;
 mod story;
 mod task;
 mod thread;
@@ -149,7 +150,7 @@ mod tests;
 #[cfg(test)]
 mod wording_tests;
 
-use socrates_model::{Location, Reading, Request};
+use socrates_model::{Location, ReadBy, Reading, Request};
 
 pub use answer::Offline;
 pub use card::{Card, catalog};
@@ -170,15 +171,29 @@ pub const NAME: &str = "offline/1";
 /// [`Reading::problems`]; what became of every clause in [`Reading::statements`]; assumptions in [`Reading::notes`].
 #[must_use]
 pub fn read(request: &Request, location: &Location) -> Reading {
-    let read = understand::understand(request, location);
+    read_by(request, location, ReadBy::Grammar)
+}
+
+/// The same, with the rough scenario read by the grammar or by the small reader ([`ReadBy::Small`]); an author that reads it itself is
+/// taken for the grammar.
+#[must_use]
+pub fn read_by(request: &Request, location: &Location, by: ReadBy) -> Reading {
+    let read = understand::understand(request, location, by);
     let statements = statements::statements(request, location, &read);
     Reading { statements, ..read.reading }
 }
 
 /// The same without [`Reading::statements`], at a fiftieth of the time: for those who only need what was understood.
 #[must_use]
-pub fn understood(request: &Request, location: &Location) -> Reading {
-    understand::understand(request, location).reading
+pub fn understood(request: &Request, location: &Location, by: ReadBy) -> Reading {
+    understand::understand(request, location, by).reading
+}
+
+/// What each pass of the small reader makes of a rough scenario, a line for each thing: tokens, background, chunks, clauses, statements, the
+/// story, and the pieces that are not in it.
+#[must_use]
+pub fn passes(rough: &str) -> String {
+    socrates_reader::Reader::shipped().passes(rough).to_string()
 }
 
 /// What a text was read as ([`read`]), as the tables of a form: it can stand under the text in the request, be corrected there, and then wins
@@ -190,9 +205,10 @@ pub fn form_of(request: &Request, reading: &Reading, location: &Location) -> Str
 
 /// The keys of `[expect]` that would settle a problem of the reading for which nothing is made: found by setting them.
 #[must_use]
-pub fn settled_by(request: &Request, location: &Location) -> Vec<&'static str> {
-    let stops =
-        |request: &Request| socrates_model::fault::hard(&understand::understand(request, location).reading.problems);
+pub fn settled_by(request: &Request, location: &Location, by: ReadBy) -> Vec<&'static str> {
+    let stops = |request: &Request| {
+        socrates_model::fault::hard(&understand::understand(request, location, by).reading.problems)
+    };
     let before = stops(request);
     let settles = |expect: socrates_model::request::Expect| {
         let after = stops(&Request { expect, ..request.clone() });

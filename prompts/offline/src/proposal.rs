@@ -35,7 +35,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         let (people, extras) = found.map(|card| default_cast::people(card, &mut draw, request)).unwrap_or_default();
         (people, extras, true)
     } else {
-        let understood = understand(request, location);
+        let understood = understand(request, location, reading.by);
         let extras = understood.extras;
         let extras =
             if extras.len() == reading.humans.len() { extras } else { vec![Extra::default(); reading.humans.len()] };

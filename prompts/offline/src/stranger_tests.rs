@@ -99,7 +99,9 @@ fn what_is_expected_wins_over_the_text() {
 
 #[test]
 fn a_key_of_expect_is_only_proposed_where_it_helps() {
-    let keys = |rough: &str| settled_by(&request("Drive to the exit", Some(rough)), &map("hospital"));
+    let keys = |rough: &str| {
+        settled_by(&request("Drive to the exit", Some(rough)), &map("hospital"), socrates_model::ReadBy::Grammar)
+    };
     assert_eq!(keys("A nurse walks through a narrow passage."), ["place"]);
     assert_eq!(keys("Four hundred people come towards the robot."), ["humans"]);
     for rough in ["A person follows the robot and runs away from it.", "Une personne marche vers le robot."] {

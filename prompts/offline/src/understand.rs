@@ -3,8 +3,8 @@
 use socrates_model::proposal::WayPart;
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
-    Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, Reading, Relation,
-    Request, Rule, Trigger,
+    Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, ReadBy, Reading,
+    Relation, Request, Rule, Trigger,
 };
 
 use crate::card::Ends;
@@ -17,7 +17,7 @@ use crate::story::{self, Story};
 use crate::task::{self, End, Task};
 use crate::{
     again, aside, boards, chance, contra, cut, default_cast, expect, facing, form, named_way, numbered, place, sides,
-    spot, words,
+    small, spot, words,
 };
 
 /// The reading with what the model has no field for.
@@ -50,23 +50,30 @@ pub(crate) struct Extra {
 }
 
 /// Reads a request. Never fails: what cannot be read stands in `problems`.
-pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
-    understood(request, location, true)
+pub(crate) fn understand(request: &Request, location: &Location, by: ReadBy) -> Understood {
+    understood(request, location, true, by)
 }
 
 /// Reads a request. A text of which words are hidden is not `whole`: it is not held to be in another language, nor against a form.
-pub(crate) fn understood(request: &Request, location: &Location, whole: bool) -> Understood {
+pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by: ReadBy) -> Understood {
     let told = aside::split(request.rough_scenario.as_deref().unwrap_or_default());
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
     let stated = !request.form.is_empty();
-    let mut story = if stated { form::story(request, location) } else { rough.map(story::read).unwrap_or_default() };
+    let small = by == ReadBy::Small;
+    let mut story = match rough {
+        _ if stated => form::story(request, location),
+        Some(_) if small => small::story(&told.story),
+        Some(rough) => story::read(rough),
+        None => Story::default(),
+    };
     let mut task = task::read(&asked.story, location);
     // The ends that a form states take the place of those of the task.
     for (slot, stated) in [(&mut task.start, &request.robot.start), (&mut task.goal, &request.robot.goal)] {
         *slot = slot.take().filter(|_| stated.is_none());
     }
-    let mut reading = Reading { format: FORMAT, task: shortened(&asked.story), ..Reading::default() };
+    let by = if small { ReadBy::Small } else { ReadBy::Grammar };
+    let mut reading = Reading { format: FORMAT, by, task: shortened(&asked.story), ..Reading::default() };
     let context = aside::split(&request.social_context);
     for (at, found) in [("rough_scenario", &told), ("task", &asked), ("social_context", &context)] {
         reading.problems.extend(found.instructions.iter().map(|sentence| {
@@ -138,7 +145,7 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool) ->
     crate::spans::mark(request, &mut reading.problems);
     if whole && stated && rough.is_some() {
         let text = Request { form: socrates_model::form::Form::default(), ..request.clone() };
-        reading.notes.extend(form::differs(&reading, &understand(&text, location).reading));
+        reading.notes.extend(form::differs(&reading, &understand(&text, location, by).reading));
     }
     let before = told.story.len() - told.story.trim_start().len();
     let used = story.used.iter().map(|at| at.start + before..at.end + before).collect();

@@ -33,10 +33,13 @@ pub(crate) struct Read {
     /// Write what was read as a form under the text, to be corrected there; it then wins over the text.
     #[arg(long)]
     write: bool,
+    /// Show first what each pass of the small reader makes of the rough scenario.
+    #[arg(long)]
+    passes: bool,
 }
 
 impl Read {
     pub(super) fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        done(run::read(talk, config, &self.request, self.write))
+        done(run::read(talk, config, &self.request, self.write, self.passes))
     }
 }

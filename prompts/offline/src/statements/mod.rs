@@ -24,7 +24,7 @@ use socrates_model::fault::Span;
 use socrates_model::form::Form;
 use socrates_model::request::Expect;
 use socrates_model::statement::{Background, Became, Statement, TextKey, covers};
-use socrates_model::{Fault, Location, Reading, Request};
+use socrates_model::{Fault, Location, ReadBy, Reading, Request};
 
 use crate::understand::{Understood, understood};
 use background::Around;
@@ -65,13 +65,16 @@ pub(crate) fn statements(request: &Request, location: &Location, read: &Understo
     // What `[expect]` and a form say wins over the text: only without them a text shows what was read of it.
     let without_expect = Request { expect: Expect::default(), ..request.clone() };
     let text_alone = Request { form: Form::default(), ..without_expect.clone() };
-    let again = |other: &Request| (other != request).then(|| understood(other, location, true));
+    let by = read.reading.by;
+    let again = |other: &Request| (other != request).then(|| understood(other, location, true, by));
     let (alone, beside) = (again(&text_alone), again(&without_expect));
     let (alone, beside) = (alone.as_ref().unwrap_or(read), beside.as_ref().unwrap_or(read));
     let mut found = Vec::new();
     for key in TextKey::ALL {
         let text = key.text_of(request);
-        if !text.trim().is_empty() {
+        if key == TextKey::RoughScenario && by == ReadBy::Small {
+            found.extend(crate::small::statements(request, alone, &read.reading));
+        } else if !text.trim().is_empty() {
             // A form takes the place of the rough scenario; the task and the context say the same beside it.
             let (request, whole) =
                 if key == TextKey::RoughScenario { (&text_alone, alone) } else { (&without_expect, beside) };
@@ -111,7 +114,7 @@ impl<'a> Account<'a> {
         let text = key.text_of(request);
         let tokens = text::tokens(text);
         let kinds = words::kinds(&tokens, location);
-        let read = |text: &str| read_again(request, location, key, text);
+        let read = |text: &str| read_again(request, location, (key, reading.by), text);
         let used = tokens.iter().map(|token| key == TextKey::RoughScenario && touched(token, &whole.used)).collect();
         let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
         let influence = again.influence();
@@ -119,7 +122,7 @@ impl<'a> Account<'a> {
     }
 
     fn reads(&self, text: &str) -> Vec<Line> {
-        read_again(self.request, self.location, self.key, text)
+        read_again(self.request, self.location, (self.key, self.reading.by), text)
     }
 
     fn statements(&self) -> Vec<Statement> {
@@ -272,14 +275,14 @@ fn touched(token: &Token, used: &[Range<usize>]) -> bool {
 }
 
 /// The lines of the request with another text in place of one of its own.
-fn read_again(request: &Request, location: &Location, key: TextKey, text: &str) -> Vec<Line> {
+fn read_again(request: &Request, location: &Location, (key, by): (TextKey, ReadBy), text: &str) -> Vec<Line> {
     let mut other = request.clone();
     match key {
         TextKey::RoughScenario => other.rough_scenario = Some(text.to_owned()),
         TextKey::Task => text.clone_into(&mut other.task),
         TextKey::SocialContext => text.clone_into(&mut other.social_context),
     }
-    understood(&other, location, false).lines
+    understood(&other, location, false, by).lines
 }
 
 /// The words of the reading's texts that were not understood, each once, as they stand there.

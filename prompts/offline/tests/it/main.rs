@@ -6,4 +6,5 @@ mod common;
 mod corpus;
 mod edits;
 mod faults;
+mod small;
 mod ways;

@@ -9,6 +9,6 @@ pub(crate) fn question<'a>(on: &str, rough: impl Into<Option<&'a str>>) -> Quest
     }))
     .unwrap();
     let location = socrates_maps::shipped::load(on).unwrap();
-    let reading = socrates_offline::understood(&request, &location);
+    let reading = socrates_offline::understood(&request, &location, socrates_model::ReadBy::Grammar);
     Question::first(request, reading, location, 3)
 }

@@ -1,0 +1,134 @@
+//! The reader of requests: text to statements to a form. No map, no catalog of cards, no geometry, no weights.
+//!
+//! ```text
+//! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story ─► form
+//!         lex       normalize    chunk     sentence        clause_says   discourse    story    form
+//!         words     scopes       phrase    subject         times         cast           │
+//!                   rewrites     name      predicate       maker                        └─► account: what became of every word
+//!                                places    find: rows of frames, signs
+//! ```
+//!
+//! Each pass is a pure function of the one before it, and prints itself ([`Passes`]). Everything lexical is a row of `data/`
+//! with examples that are tests; how a row is added stands in `ADDING.md`.
+//!
+//! Never: a map, a file, a random number; a word that vanishes: what no statement used is [`Fate::NotRead`].
+
+use std::sync::LazyLock;
+
+mod token;
+mod words;
+
+pub mod pattern;
+mod rows;
+
+mod lexicon;
+
+mod lex;
+mod normalize;
+
+mod noun;
+
+mod name;
+mod phrase;
+
+mod chunk;
+mod find;
+
+mod clause;
+mod parser;
+mod predicate;
+mod sentence;
+mod subject;
+
+mod statement;
+
+mod maker;
+mod times;
+
+mod clause_says;
+
+mod cast;
+mod discourse;
+
+mod line;
+mod story;
+mod told;
+
+mod form;
+
+mod account;
+
+mod passes;
+
+mod examples;
+
+pub use account::{Fate, Piece, Read, Verdict};
+pub use cast::People;
+pub use examples::Example;
+pub use lexicon::{BadData, Files, SHIPPED};
+pub use line::Line;
+pub use passes::Passes;
+pub use rows::{Act, Cue};
+pub use statement::{Deed, Reason, Says, Statement};
+pub use story::{Person, Step, Story};
+
+/// A reader with its rows.
+#[derive(Debug, Default)]
+pub struct Reader(lexicon::Lexicon);
+
+impl Reader {
+    /// The reader by the shipped rows. That they can be read is a test.
+    #[must_use]
+    pub fn shipped() -> &'static Self {
+        static READER: LazyLock<Reader> = LazyLock::new(|| Reader::of(SHIPPED).unwrap_or_default());
+        &READER
+    }
+
+    /// A reader by other rows.
+    ///
+    /// # Errors
+    /// [`BadData`] for a file, key or pattern that cannot be.
+    pub fn of(files: Files<'_>) -> Result<Self, BadData> {
+        lexicon::Lexicon::read(files, None).map(Self)
+    }
+
+    /// A reader without the rows of a name, to count what they earn.
+    ///
+    /// # Errors
+    /// As [`Reader::of`].
+    pub fn without(files: Files<'_>, id: &str) -> Result<Self, BadData> {
+        lexicon::Lexicon::read(files, Some(id)).map(Self)
+    }
+
+    /// Names of the rows that can be left out, in the order of the files.
+    #[must_use]
+    pub fn rows(&self) -> Vec<&str> {
+        let frames = self.0.frames.iter().map(|row| row.id.as_str());
+        let rewrites = self.0.rewrites.iter().map(|row| row.id.as_str());
+        frames.chain(rewrites).chain(self.0.scopes.iter().map(|row| row.id.as_str())).collect()
+    }
+
+    /// The examples of the rows: name, text, what it gives, and whether it does.
+    #[must_use]
+    pub fn examples(&self) -> Vec<Example<'_>> {
+        examples::all(&self.0)
+    }
+
+    /// Every pass of a text.
+    #[must_use]
+    pub fn passes(&self, text: &str) -> Passes<'_> {
+        Passes::by(text, &self.0)
+    }
+
+    /// Reads a text. Never fails: what is not understood stands in [`Read::pieces`].
+    #[must_use]
+    pub fn read(&self, text: &str) -> Read {
+        self.passes(text).read()
+    }
+}
+
+/// Reads a text by the shipped rows.
+#[must_use]
+pub fn read(text: &str) -> Read {
+    Reader::shipped().read(text)
+}

@@ -1,0 +1,229 @@
+//! The reader as a whole: its rows by their examples, and what holds of every text.
+
+#![cfg(test)]
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use socrates_reader::{Example, Fate, Files, Reader, SHIPPED, Verdict};
+
+#[derive(Deserialize)]
+struct Corpus {
+    request: Vec<Case>,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    text: String,
+}
+
+/// Every text of the corpora.
+fn texts() -> Vec<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../offline/corpus");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    paths.sort();
+    let corpus = |path: &PathBuf| toml::from_str::<Corpus>(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let texts: Vec<String> = paths.iter().map(corpus).flat_map(|corpus| corpus.request).map(|case| case.text).collect();
+    assert!(texts.len() > 3000, "{}", texts.len());
+    texts
+}
+
+fn holds(reader: &Reader, example: &Example<'_>) -> bool {
+    let story = reader.read(example.text).story.to_string();
+    if matches!(example.file, "rewrites" | "scopes") {
+        return story == reader.read(example.gives).story.to_string();
+    }
+    story.lines().any(|line| line.starts_with(example.gives))
+}
+
+#[test]
+fn every_row_reads_its_examples_and_no_other() {
+    let reader = Reader::of(SHIPPED).unwrap();
+    let examples = reader.examples();
+    assert!(examples.len() > 150, "{}", examples.len());
+    let wrong: Vec<_> = examples.iter().filter(|example| holds(&reader, example) != example.does).collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_row_that_cannot_be_is_refused_with_its_file() {
+    let bad = Files { signs: "[[row]]\nsays = \"HELLO\"", ..SHIPPED };
+    assert_eq!(Reader::of(bad).unwrap_err().to_string(), "`signs.toml` cannot be read");
+    let frames = "[[row]]\nid = \"odd\"\nphrases = [\"@ walks\"]\nreads = []\ngives = \"\"\nnot = []";
+    let bad = Files { frames, ..SHIPPED };
+    let fault = Reader::of(bad).unwrap_err();
+    assert_eq!(fault.to_string(), "a pattern cannot be read");
+}
+
+#[test]
+fn no_act_of_any_clause_vanishes() {
+    let reader = Reader::shipped();
+    let mut lost = Vec::new();
+    for text in texts() {
+        let passes = reader.passes(&text);
+        lost.extend(passes.lost().into_iter().map(|word| format!("`{word}` of “{text}”")));
+    }
+    assert!(lost.is_empty(), "{} acts, among them {:#?}", lost.len(), lost.iter().take(5).collect::<Vec<_>>());
+}
+
+#[test]
+fn every_word_lies_in_one_piece_and_pieces_stand_in_the_order_of_the_text() {
+    let reader = Reader::shipped();
+    for text in texts() {
+        let read = reader.read(&text);
+        assert!(
+            read.pieces.iter().all(|piece| text.get(piece.at.clone()).is_some_and(|words| !words.is_empty())),
+            "{text}"
+        );
+        let apart = read.pieces.windows(2).all(|two| two[0].at.end <= two[1].at.start);
+        assert!(apart, "{text}: {:?}", read.pieces);
+        // A word with its apostrophe may be two: `it's`.
+        for (at, letter) in text.char_indices().filter(|(_, letter)| letter.is_alphanumeric()) {
+            let behind = read.pieces.partition_point(|piece| piece.at.end <= at);
+            let of = read.pieces.get(behind).is_some_and(|piece| piece.at.start <= at);
+            assert!(of, "`{letter}` at {at} of “{text}”: {:?}", read.pieces);
+        }
+    }
+}
+
+/// The words of a text that are said to be not read.
+fn not_read(text: &str) -> Vec<&str> {
+    let read = socrates_reader::read(text);
+    let lost = read.pieces.into_iter().filter(|piece| piece.fate == Fate::NotRead);
+    lost.map(|piece| text.get(piece.at).unwrap()).collect()
+}
+
+#[test]
+fn what_goes_into_no_statement_is_said_to_be_not_read() {
+    for (text, lost) in [
+        // How long somebody stands who does nothing else is in no form.
+        ("A nurse stands in the corridor for 10 s.", vec!["10 s"]),
+        // A reason for nothing that could be done at once.
+        ("When the robot has yodeled, a nurse steps aside.", vec!["When the robot has yodeled"]),
+        // Whoever is named, and of whom nothing is told.
+        ("A nurse crosses the corridor with a juggler.", vec!["juggler"]),
+        ("A nurse steps aside at 2 m.", vec![]),
+        ("A nurse never blocks the robot.", vec![]),
+    ] {
+        assert_eq!(not_read(text), lost, "{text}");
+    }
+}
+
+#[test]
+fn a_clause_may_be_read_in_part() {
+    let text = "A nurse yodels in the corridor. She stops when she sees the robot. The weather yodels.";
+    let verdicts: Vec<Verdict> =
+        socrates_reader::read(text).verdicts().into_iter().map(|(_, verdict)| verdict).collect();
+    assert!(
+        matches!(&verdicts[0], Verdict::Partly(lost) if text.get(lost[0].clone()) == Some("yodels")),
+        "{verdicts:?}"
+    );
+    assert_eq!(verdicts[1], Verdict::Read);
+    assert_eq!(verdicts[2], Verdict::NotRead);
+}
+
+#[test]
+fn people_are_counted() {
+    for (text, people) in [
+        ("Two nurses and a guest walk towards the robot.", 3),
+        ("Three visitors stand in the corridor, no, two.", 2),
+        ("There are four, sorry, five visitors in the corridor.", 5),
+        ("Three people come out: a nurse and two guests.", 3),
+        ("A couple, a woman and her husband, walk towards the robot.", 2),
+        ("Maria, a young nurse, walks towards the robot and stops.", 1),
+        ("Two porters stand there. The first stops, his colleague walks on.", 2),
+        ("People block robots. A nurse crosses the corridor.", 1),
+        ("Could I have a person? A nurse walks towards the robot.", 1),
+        ("A mother and her son walk towards the robot. The boy stops.", 2),
+        ("One visitor runs away. The other stops.", 2),
+        ("At the junction an old man stops, a nurse a few steps behind him.", 2),
+        ("Around a quarter to eight a nurse crosses the corridor.", 1),
+        ("Half a dozen visitors stand there.", 6),
+    ] {
+        let story = socrates_reader::read(text).story;
+        assert_eq!(story.people.len(), people, "{text}\n{story}");
+    }
+}
+
+#[test]
+fn of_several_those_act_who_are_meant() {
+    for (text, who) in [
+        ("Three visitors stand there. All but the last step aside.", vec![1, 2]),
+        ("Three visitors stand there. All but one step aside.", vec![1, 2]),
+        ("Three visitors stand there. The second steps aside.", vec![2]),
+        (
+            "Two visitors come. One crosses, the other walks ahead of the robot. The one who crosses steps aside.",
+            vec![1],
+        ),
+        ("Two visitors come. The first stops at 3 m. None of them steps aside.", vec![]),
+    ] {
+        let story = socrates_reader::read(text).story;
+        let steps_aside =
+            |person: &socrates_reader::Person| person.steps.iter().any(|step| step.act.name() == "give_way");
+        let found: Vec<usize> =
+            story.people.iter().enumerate().filter(|(_, person)| steps_aside(person)).map(|(at, _)| at + 1).collect();
+        assert_eq!(found, who, "{text}\n{story}");
+    }
+}
+
+#[test]
+fn what_no_row_knows_is_said_to_be_not_read() {
+    let read = socrates_reader::read("A nurse yodels in the corridor and steps aside when she sees the robot.");
+    let words: Vec<_> = read
+        .pieces
+        .iter()
+        .filter(|piece| piece.fate == Fate::NotRead)
+        .map(|piece| (piece.at.start, piece.at.end))
+        .collect();
+    assert_eq!(words, [(8, 14)]);
+    assert_eq!(read.story.to_string(), "place: corridor\nhuman_1: nurse\nhuman_1: give_way when visible\n");
+}
+
+#[test]
+fn odd_texts_are_read_as_nothing() {
+    for text in [
+        "",
+        " ",
+        "...",
+        "?!",
+        "\u{1f916}\u{1f916}",
+        "1 2 3",
+        "'s",
+        "n't",
+        "(((",
+        "- - -",
+        "the the the",
+        "\"",
+        "and and and",
+    ] {
+        let read = socrates_reader::read(text);
+        assert!(read.story.people.len() <= 3, "{text}: {}", read.story);
+    }
+}
+
+#[test]
+fn a_story_makes_a_form() {
+    let read = socrates_reader::read(
+        "Two nurses come towards the robot in the corridor. They step aside when it is 3 m away.",
+    );
+    let form = toml::to_string(&read.story.form()).unwrap();
+    assert!(
+        form.contains("count = 2") && form.contains("relation = \"frontal\"") && form.contains("place = \"corridor\""),
+        "{form}"
+    );
+    assert!(form.contains("act = \"give_way\"") && form.contains("robot_near = 3.0"), "{form}");
+}
+
+/// The passes of a sentence, as `--show` prints them; the file beside this one is what a reader of the crate looks at first.
+#[test]
+fn the_passes_print_themselves() {
+    let text =
+        "I want to see how it copes. The moment an elderly nurse sees the robot, she stops for 3 s and looks at it.";
+    let shown = Reader::shipped().passes(text).to_string();
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/passes.txt");
+    if std::env::var_os("UPDATE_PASSES").is_some() {
+        std::fs::write(&file, &shown).unwrap();
+    }
+    assert_eq!(shown, std::fs::read_to_string(file).unwrap(), "UPDATE_PASSES=1 writes it anew");
+}
