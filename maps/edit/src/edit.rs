@@ -311,7 +311,10 @@ impl Sketch {
         }
         let ends = self.edges.iter_mut().flat_map(|edge| [&mut edge.from, &mut edge.to]);
         let named = self.nodes.iter_mut().map(|node| &mut node.id).chain(ends);
-        for name in named.chain(self.doors.iter_mut().flat_map(|door| &mut door.inside)) {
+        for name in named
+            .chain(self.doors.iter_mut().flat_map(|door| &mut door.inside))
+            .chain(self.names.iter_mut().flat_map(|area| &mut area.nodes))
+        {
             if *name == id {
                 name.clone_from(&to);
             }
@@ -386,6 +389,8 @@ impl Sketch {
             self.edges.retain(|edge| !meets(&edge));
             self.nodes.retain(|node| &node.id != id);
             self.doors.iter_mut().for_each(|door| door.inside.retain(|inner| inner != id));
+            self.names.iter_mut().for_each(|area| area.nodes.retain(|inner| inner != id));
+            self.names.retain(|area| !area.nodes.is_empty());
             let other = |edge: &Edge| if &edge.from == id { edge.to.clone() } else { edge.from.clone() };
             if let ([first, second], true) = (ways.as_slice(), join) {
                 let (a, b) = (other(first), other(second));

@@ -94,6 +94,7 @@ fn drawn(grid: &Grid, graph: SceneGraph, doors: Vec<socrates_model::Door>, descr
         grid: grid.clone(),
         graph,
         doors,
+        names: Vec::new(),
         warnings: Vec::new(),
     }
 }

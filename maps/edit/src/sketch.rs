@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use socrates_maps::{EXTRA, GRAPH, written};
-use socrates_model::{DoorKind, DoorOpens, GraphEdge, GraphNode, Grid, Location, NodeId, Point, SceneGraph};
+use socrates_model::{AreaName, DoorKind, DoorOpens, GraphEdge, GraphNode, Grid, Location, NodeId, Point, SceneGraph};
 
 /// Positions that differ by less than this are one, pixels.
 const SAME_PX: f64 = 1e-6;
@@ -114,6 +114,9 @@ pub struct Sketch {
     pub edges: Vec<Edge>,
     /// Doors.
     pub doors: Vec<Door>,
+    /// Names of areas, with their nodes; they go with these.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub names: Vec<AreaName>,
 }
 
 impl Sketch {
@@ -138,6 +141,7 @@ impl Sketch {
             nodes: location.graph.nodes().iter().map(node).collect(),
             edges: location.graph.edges().iter().map(edge).collect(),
             doors: location.doors.iter().map(door).collect(),
+            names: location.names.clone(),
         }
     }
 
@@ -155,6 +159,7 @@ impl Sketch {
         let doors = self.doors.iter().map(|door| door.in_map(grid)).collect();
         location.graph = graph;
         location.doors = doors;
+        location.names.clone_from(&self.names);
         location.description.clone_from(&self.description);
         location.warnings.clear();
     }
@@ -191,7 +196,7 @@ impl Sketch {
         let at = |point: &Point| format!("[{:?}, {:?}]", tidy(point.x), tidy(point.y));
         [
             (GRAPH, written::graph_json(nodes, links, self.decimals())),
-            (EXTRA, written::location_toml(&self.description, &doors, at)),
+            (EXTRA, written::location_toml(&self.description, &doors, at) + &written::names_toml(&self.names)),
         ]
     }
 
