@@ -79,6 +79,11 @@ fn empty() -> Remark {
 fn of_finding(finding: Finding, location: &Location) -> Remark {
     let Finding { about, at, fault } = finding;
     let subject = match about {
+        // A name is told by its text: the page leads to its first node.
+        About::Name(place) => {
+            let node = location.names.get(place).and_then(|area| area.nodes.first());
+            node.map_or(Subject::Whole, |id| Subject::Node(id.clone()))
+        }
         About::Whole => Subject::Whole,
         About::Node(id) => Subject::Node(id),
         About::Edge(from, to) => Subject::Edge(from, to),
