@@ -39,10 +39,13 @@ impl Account {
         let mut account = Self::default();
         for sentence in sentences(request) {
             let own = |statement: &&Statement| statement.at == sentence.at && statement.span == sentence.span;
-            let (mut claims, mut cannot, mut background) = (Vec::new(), None, None);
+            let (mut claims, mut cannot, mut background, mut stated) = (Vec::new(), None, None, false);
             for statement in reading.statements.iter().filter(own) {
                 match &statement.became {
-                    Became::Read { facts, .. } => claims.extend(facts.iter().filter_map(claim)),
+                    Became::Read { facts, .. } => {
+                        stated |= facts.is_empty();
+                        claims.extend(facts.iter().filter_map(claim));
+                    }
                     Became::NotPlayed { why } => cannot = Some(why.to_string()),
                     Became::Background(reason) | Became::Disputed { reason, .. } => background = Some(*reason),
                     Became::NotRead { .. } => {}
@@ -50,7 +53,7 @@ impl Account {
             }
             let share = match background {
                 Some(reason) => Share::Background(reason),
-                None if claims.is_empty() && cannot.is_none() => continue,
+                None if claims.is_empty() && cannot.is_none() && !stated => continue,
                 None => Share::Asked { claims, cannot },
             };
             account.0.insert(sentence.id, share);
@@ -148,7 +151,9 @@ fn share(id: &str, value: &Value) -> Result<Share, Fault> {
     let whole = value.as_array().is_none_or(|items| items.len() == lines.len());
     let read: Result<Vec<Line>, String> = lines.iter().map(|text| line(text)).collect();
     let read = read.map_err(|why| wrong(&format!(".{id}"), why))?;
-    if read.is_empty() || !whole {
+    // A sentence may ask for nothing beyond what is stated.
+    let nothing = value.as_array().is_some_and(Vec::is_empty);
+    if read.is_empty() && !nothing || !whole {
         let message = format!("expected lines such as `f1 human_1: words of it`, `setting` or `{CANNOT}: why`");
         return Err(wrong(&format!(".{id}"), message));
     }

@@ -10,7 +10,7 @@ use socrates_model::reading::Fact;
 use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, ReadBy, Reading, Request, SceneGraph};
 
 use crate::question::Question;
-use crate::style::{BehaviorsForm, Style};
+use crate::style::{BehaviorsForm, PathsForm, Style};
 use crate::{account, terse, ways};
 
 /// The map of the examples.
@@ -22,8 +22,19 @@ pub(crate) const ALL: [&str; 2] =
 /// An answer to the first example that is refused, with its fault: what a model gets wrong most easily.
 pub const REFUSED_PROPOSAL: &str =
     "`\"setup\":[\"robot_keeps min_m=0.4\"]`: P-VERIFY, it judges what the robot does; that is an outcome.";
-/// The same of paths.
-pub const REFUSED_PATHS: &str = "`\"human_2\":{\"start\":\"n\",\"via\":[],\"meet\":\"c\",\"goal\":\"c\"}`: G-MEETEND, it ends where it meets the robot; one node more.";
+/// The same of paths, in the form in which they are asked for.
+#[must_use]
+pub const fn refused_paths(form: PathsForm) -> &'static str {
+    match form {
+        PathsForm::Anchors => {
+            "`\"human_2\":{\"start\":\"n\",\"via\":[],\"meet\":\"c\",\"goal\":\"c\"}`: G-MEETEND, it ends where it meets the robot; one node more."
+        }
+        PathsForm::Nodes => "`\"human_2\":[\"n\",\"c\"]`: G-MEETEND, it ends where it meets the robot; one node more.",
+        PathsForm::Walk => {
+            "`\"human_2\":{\"walk\":{\"at\":\"n\",\"next\":{\"at\":\"c\",\"next\":null}},\"meet\":\"c\"}`: G-MEETEND, it ends where it meets the robot; one node more."
+        }
+    }
+}
 
 /// One worked example.
 #[derive(Debug, Clone, Deserialize)]

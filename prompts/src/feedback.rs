@@ -15,8 +15,8 @@ const CLOSING: &str =
 const ADVICE: &[(FaultCode, &str)] = &[
     (
         FaultCode::PVerify,
-        "expected_events: give each such human and each such fact a clause with role `setup`, `must` and the fact's id as `source`, \
-         such as `meets`, `reacts` or `stands_still`",
+        "expected_events: give each such human and each such fact a test in `setup` that shows it, such as `meets`, `reacts` or \
+         `stands_still`, with the id of the fact as `source`",
     ),
     (FaultCode::EJson, FORM),
     (FaultCode::ESchema, FORM),

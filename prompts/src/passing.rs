@@ -20,8 +20,7 @@ pub struct Passing {
     pub reading: BTreeMap<String, Vec<String>>,
 }
 
-const INTRODUCTION: &str =
-    "So it would pass, for instance (made by the program, which knows the checks and not what is meant):\n";
+const INTRODUCTION: &str = "So it would pass the checks before a run, for instance (made by the program, which does not know what is meant):\n";
 
 /// The parts of the example that the refused answer has otherwise, a line each, in the form of the answer; nothing where there is no
 /// example, or nothing to compare it with.

@@ -164,7 +164,7 @@ impl Question {
                         ("form", style.paths.name().into()),
                         ("map", map.into()),
                         ("examples", shown.into()),
-                        ("refused", examples::REFUSED_PATHS.into()),
+                        ("refused", examples::refused_paths(style.paths).into()),
                     ],
                 )
             }

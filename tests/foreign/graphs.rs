@@ -44,9 +44,9 @@ fn geojson_and_networkx_read_the_graphs_of_a_location() {
         let list: Value = serde_json::from_slice(&std::fs::read(at.join("not_carried.json")).unwrap()).unwrap();
         assert_eq!(list["format"], to, "{list}");
     }
-    let out =
-        Command::new(python).args(["-c", SCRIPT, "route.geojson", "graph.json"]).current_dir(at).stdin(Stdio::null());
-    let out = out.output().unwrap();
+    let mut reads = Command::new(python);
+    reads.args(["-c", SCRIPT, "route.geojson", "graph.json"]).current_dir(at).stdin(Stdio::null());
+    let out = reads.output().unwrap();
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     let found: Value = serde_json::from_slice(&out.stdout).unwrap();
     let count = |key: &str| found[key].as_u64().unwrap();

@@ -1,7 +1,7 @@
 //! A request beside its texts: what it states exactly, and where the grammar disagrees with an author that reads the texts itself.
 
 use socrates_model::reading::ReadBy;
-use socrates_model::statement::{Became, Statement, TextKey};
+use socrates_model::statement::{Background, Became, Statement, TextKey};
 use socrates_model::{Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, Reading, Request};
 
 use crate::understand::{shortened, understood};
@@ -61,22 +61,28 @@ pub fn dispute(request: &Request, location: &Location, reading: &mut Reading) {
         let found = lacking(&known.problems, statement);
         statement.became = disputed(statement.became.clone(), found);
     }
-    let doubtful = |statement: &Statement| statement.at == TextKey::RoughScenario && background(statement);
+    // So is what is said to be stated already, of which only groups and numbers can be.
+    let bare = |statement: &Statement| matches!(&statement.became, Became::Read { facts, .. } if facts.is_empty());
+    let doubtful =
+        |statement: &Statement| statement.at == TextKey::RoughScenario && (background(statement) || bare(statement));
     // To account for every clause takes far longer than to read them.
     if !reading.statements.iter().any(doubtful) {
         return;
     }
     let grammar = crate::read(&text, location);
     for statement in reading.statements.iter_mut().filter(|statement| doubtful(statement)) {
-        let found = acts(&grammar, statement);
+        let found = acts(&grammar, statement, bare(statement));
         statement.became = disputed(statement.became.clone(), found);
     }
 }
 
-/// Background in which something was found.
+/// Background, or what is said to be stated, in which something was found.
 fn disputed(became: Became, found: Vec<String>) -> Became {
     match became {
         Became::Background(reason) if !found.is_empty() => Became::Disputed { reason, found },
+        Became::Read { facts, .. } if facts.is_empty() && !found.is_empty() => {
+            Became::Disputed { reason: Background::Setting, found }
+        }
         Became::Background(_)
         | Became::Read { .. }
         | Became::NotPlayed { .. }
@@ -95,10 +101,12 @@ fn lacking(problems: &[Fault], statement: &Statement) -> Vec<String> {
     problems.iter().filter(own).map(|problem| problem.message.to_string()).collect()
 }
 
-/// What the grammar reads in the words of a statement of somebody's doing, as lines of a form.
-fn acts(grammar: &Reading, statement: &Statement) -> Vec<String> {
+/// What the grammar reads in the words of a statement of somebody's doing, as lines of a form; `beyond` who stands or goes how, which comes with
+/// a group that is stated.
+fn acts(grammar: &Reading, statement: &Statement, beyond: bool) -> Vec<String> {
     let stands = |fact: &&Fact| !fact.quote.is_empty() && statement.quote.contains(&fact.quote);
-    if !grammar.facts.iter().filter(stands).any(|fact| is_act(&fact.kind)) {
+    let counts = |kind: &FactKind| is_act(kind) && !(beyond && matches!(kind, FactKind::Relates { .. }));
+    if !grammar.facts.iter().filter(stands).any(|fact| counts(&fact.kind)) {
         return Vec::new();
     }
     let own = grammar.statements.iter().filter(|other| other.meets(statement.at, statement.span));
@@ -138,7 +146,6 @@ const fn is_act(kind: &FactKind) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use socrates_model::statement::Background;
 
     fn request(rough: &str) -> Request {
         let request = serde_json::json!({"location": "office", "social_context": "A busy day", "task": "Drive to the exit",
@@ -194,6 +201,17 @@ mod tests {
         assert_eq!(fates, ["background", "disputed", "background", "background"], "{:?}", reading.statements);
         assert_eq!(reading.by, ReadBy::Author);
         assert_eq!(reading.missing(), ["A visitor comes towards the robot and stops."]);
+    }
+
+    #[test]
+    fn what_is_said_to_be_stated_is_disputed_where_somebody_acts() {
+        let asked = request("Two people stand together in a group. When they see the robot, one of them runs away.");
+        let mut reading = called_background(&asked);
+        for statement in &mut reading.statements {
+            statement.became = Became::Read { lines: Vec::new(), facts: Vec::new() };
+        }
+        dispute(&asked, &office(), &mut reading);
+        assert_eq!(reading.missing(), ["When they see the robot, one of them runs away."]);
     }
 
     #[test]

@@ -39,7 +39,11 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
             bad(format!("reading.{id}"), format!("is no sentence of the request; it has {} …", known.join(", ")));
             continue;
         };
-        let Share::Asked { claims, .. } = share else { continue };
+        let Share::Asked { claims, cannot } = share else { continue };
+        if claims.is_empty() && cannot.is_none() && stated.is_empty() {
+            let message = format!("is empty, and nothing is stated; account for \"{}\"", sentence.shown);
+            bad(format!("reading.{id}"), message);
+        }
         for claim in claims {
             if !holds(&sentence.shown, &claim.quote) {
                 bad(
@@ -164,7 +168,8 @@ fn statements(sentence: &Sentence, share: &Share, proposal: &Proposal) -> Vec<St
     match share {
         Share::Background(reason) => vec![of(Became::Background(*reason))],
         Share::Asked { claims, cannot } => {
-            let read = (!claims.is_empty()).then(|| Became::Read {
+            // Nothing beyond what is stated.
+            let read = (!claims.is_empty() || cannot.is_none()).then(|| Became::Read {
                 lines: claims.iter().flat_map(|claim| lines(claim, proposal)).collect(),
                 facts: claims.iter().map(|claim| claim.fact.clone()).collect(),
             });

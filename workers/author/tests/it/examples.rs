@@ -50,8 +50,13 @@ async fn an_example_means_the_same_in_every_form() {
 /// What a question shows as refused is refused with the fault that it names.
 #[tokio::test]
 async fn what_is_shown_as_refused_is_refused_for_the_reason_that_is_given() {
-    for (stage, shown) in [(Stage::Proposal, examples::REFUSED_PROPOSAL), (Stage::Paths, examples::REFUSED_PATHS)] {
-        let (question, mut answer) = examples::worked(stage, &Style::default(), ReadBy::Author, true).remove(0);
+    let proposal = [(Stage::Proposal, Style::default(), examples::REFUSED_PROPOSAL)];
+    let paths = PathsForm::ALL.iter().map(|form| {
+        let style = Style { paths: *form, ..Style::default() };
+        (Stage::Paths, style, examples::refused_paths(*form))
+    });
+    for (stage, style, shown) in proposal.into_iter().chain(paths) {
+        let (question, mut answer) = examples::worked(stage, &style, ReadBy::Author, true).remove(0);
         let (part, told) = shown.trim_start_matches('`').split_once("`: ").unwrap();
         let part: serde_json::Value = serde_json::from_str(&format!("{{{part}}}")).unwrap();
         let (name, value) = part.as_object().unwrap().iter().next().unwrap();

@@ -101,7 +101,7 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, nth: u32, within_m: f
         )
     });
     let text = format!(
-        "{human} and the robot never came within {within_m:.1} m{place}: closest {:.1} m at {:.1} s{missing}",
+        "{human} and the robot were never within {within_m:.1} m of each other{place}; closest anywhere {:.1} m at {:.1} s{missing}",
         nearest.distance_m, nearest.t
     );
     Finding::never(top.margin, vec![nearest.t], text).shifted(-room_s(signals, human, nth, within_m, false))
