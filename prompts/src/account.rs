@@ -234,7 +234,7 @@ mod tests {
     #[test]
     fn every_wrong_share_is_named_with_what_is_allowed() {
         let text = json!({"reading": {
-            "s1": ["weather"], "s2": [], "s3": ["cannot_be_played: "], "s4": ["f1 dog: x"], "s5": ["f1: x"], "s6": 7,
+            "s1": ["weather"], "s2": {}, "s3": ["cannot_be_played: "], "s4": ["f1 dog: x"], "s5": ["f1: x"], "s6": 7,
             "s7": ["setting", "f1 all: x"], "s8": ["setting", 3],
         }});
         let faults = parse_account(&text.to_string()).unwrap_err();

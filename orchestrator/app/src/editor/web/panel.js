@@ -9,7 +9,7 @@ const HINTS = {
   way: "Click two nodes: the way between them, and a person who walks it.",
   pan: "Drag to move the map; the space bar does so with every tool.",
 };
-const OPENS = { always: null, never: null, near: "m", robot_near: "m", at_times: "s, with blanks between", on_event: "event" };
+const OPENS = { always: null, never: null, near: "How near, m", robot_near: "How near, m", at_times: "At, s", on_event: "Event" };
 const SHOWN_FINDINGS = 200;
 let tool = "select";
 
@@ -152,7 +152,7 @@ function ofDoor(door) {
     element("h2", {}, `Door ${door.id}`),
     field("door-id", "Name", door.id, (id) => with_({ id }), { maxlength: "100" }),
     element("div", { class: "pair" }, element("div", {}, element("label", { for: "door-kind" }, "Of a"), kind), element("div", {}, element("label", { for: "door-opens" }, "Opens"), how)),
-    element("div", { class: "pair" }, ...(OPENS[opens] === null ? [] : [field("door-value", OPENS[opens], shown, (text) => asOpens(opens, text))]), field("door-hold", "stays open, s", door.hold_s, (text) => number(text, (hold_s) => with_({ hold_s })))),
+    element("div", { class: "pair" }, ...(OPENS[opens] === null ? [] : [field("door-value", OPENS[opens], shown, (text) => asOpens(opens, text))]), field("door-hold", "Stays open, s", door.hold_s, (text) => number(text, (hold_s) => with_({ hold_s })))),
     field("door-inside", "Nodes behind it", door.inside.join(" "), (text) => with_({ inside: text.split(/[\s,]+/).filter(Boolean) })),
     element("p", { class: "quiet small" }, `${long.toFixed(2)} m wide`),
     element("div", { class: "row" }, element("button", { type: "button", id: "door-guess", onclick: async () => { try { with_({ inside: (await ask("/opening", { on: [door.from, door.to] })).inside }); } catch (why) { trouble(told(why)); } } }, "Find the nodes behind it"), element("button", { type: "button", onclick: () => remove(false) }, "Delete")),

@@ -179,11 +179,11 @@ function moved(event) {
     for (const id of choice.nodes) { const node = nodeOf(id); dragged.set(id, [node.at[0] + by[0], node.at[1] + by[1]]); }
     drag.to = to.spot;
     drag.guides = to.guides;
-    redraw();
+    shift();
   } else if (drag.kind === "move-door") {
     const by = [Math.round(spot[0] - drag.from[0]), Math.round(spot[1] - drag.from[1])], ends = [drag.door.from, drag.door.to].map((end, index) => (drag.end === null || drag.end === index ? [end[0] + by[0], end[1] + by[1]] : end));
     dragged.set(`door ${drag.door.id}`, ends);
-    redraw();
+    drawDoors();
   } else if (drag.kind === "edge") {
     const target = nodeNear(place);
     const to = target && target.id !== drag.start.id ? { spot: target.at, guides: [] } : snapped(spot, event);

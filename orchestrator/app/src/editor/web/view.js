@@ -4,7 +4,7 @@ const COLORS = { corridor: "#48627c", narrow_passage: "#8a5f00", intersection: "
 const NODE_R = 6, LABELS_FROM = 1.6, TILES_KEPT = 160;
 const view = { x: 0, y: 0, scale: 1 };
 const tiles = new Map();
-let dragged = new Map(), layers = {}, walking = null;
+let dragged = new Map(), layers = {}, shapes = { nodes: new Map(), edges: [] }, walking = null;
 
 // What is chosen.
 const choice = {
@@ -137,12 +137,14 @@ function line(parent, kind, a, b, more = {}) {
 
 function drawEdges() {
   layers.edges.replaceChildren();
+  shapes.edges = [];
   const places = new Map(now.sketch.nodes.map((node) => [node.id, at(node)]));
   for (const edge of now.sketch.edges) {
     const key = edgeKey(edge), a = places.get(edge.from), b = places.get(edge.to);
-    line(layers.edges, choice.edges.has(key) ? "edge chosen" : "edge", a, b);
+    const shown = line(layers.edges, choice.edges.has(key) ? "edge chosen" : "edge", a, b);
     const hit = line(layers.edges, "edge hit", a, b, { "data-edge": key });
     made("title", {}, hit).textContent = `${edge.from} – ${edge.to}: ${edge.kind}`;
+    shapes.edges.push({ edge, lines: [shown, hit] });
   }
 }
 
@@ -158,12 +160,32 @@ function drawDoors() {
 
 function drawNodes() {
   layers.nodes.replaceChildren();
+  shapes.nodes.clear();
   const labels = view.scale >= LABELS_FROM || now.sketch.nodes.length < 60;
   for (const node of now.sketch.nodes) {
     const [x, y] = toScreen(at(node)), isChosen = choice.nodes.has(node.id);
     const dot = made("circle", { class: isChosen ? "node chosen" : "node", cx: x, cy: y, r: NODE_R, fill: colorOf(node.kind), "data-node": node.id, role: "img", "aria-label": `${node.id}, ${node.kind}` }, layers.nodes);
     made("title", {}, dot).textContent = `${node.id}: ${node.kind}`;
-    if (labels || isChosen) made("text", { class: "label", x: x + 8, y: y - 6 }, layers.nodes).textContent = node.id;
+    const label = labels || isChosen ? made("text", { class: "label", x: x + 8, y: y - 6 }, layers.nodes) : null;
+    if (label) label.textContent = node.id;
+    shapes.nodes.set(node.id, { dot, label });
+  }
+}
+
+// Puts what is dragged where it is, and leaves everything else: a frame of a drag costs as much as what moves.
+function shift() {
+  const set = (shape, places) => Object.entries(places).forEach(([name, value]) => shape.setAttribute(name, value));
+  for (const [id, spot] of dragged) {
+    const shape = shapes.nodes.get(id), [x, y] = toScreen(spot);
+    if (!shape) continue;
+    set(shape.dot, { cx: x, cy: y });
+    if (shape.label) set(shape.label, { x: x + 8, y: y - 6 });
+  }
+  for (const { edge, lines } of shapes.edges) {
+    for (const [end, x, y] of [[edge.from, "x1", "y1"], [edge.to, "x2", "y2"]]) {
+      const spot = dragged.get(end);
+      if (spot) for (const one of lines) { const [px, py] = toScreen(spot); set(one, { [x]: px, [y]: py }); }
+    }
   }
 }
 
