@@ -33,7 +33,7 @@ const DRAWS: u32 = 60;
 /// In a building for which no form is asked, at most so many rooms per asked room are others, and this many more.
 const OTHERS: (usize, usize) = (1, 4);
 /// How much an area may differ from one that a type of room usually has, where none is asked, percent.
-const USUAL: (i32, i32) = (75, 130);
+const USUAL: (i32, i32) = (100, 130);
 /// At most so many stations belong to one room.
 const MOST_SLOTS: usize = 7;
 /// How many times as long as wide a room may be, in tenths.
@@ -288,7 +288,7 @@ impl Attempt {
         order.sort_by_key(|(drawn, chain)| (std::cmp::Reverse(chain.len()), *drawn));
         for (_, chain) in order {
             let rooms: Vec<&Template> = chain.iter().filter_map(|at| asked.get(*at)).map(|row| &row.template).collect();
-            let Some((at, part, first, counts)) = place(&strips, &rooms, chance) else {
+            let Some((at, part, first, counts)) = place(&strips, &rooms, brief.only, chance) else {
                 unmet.extend(missing(&chain, asked, &strips));
                 continue;
             };
@@ -394,8 +394,9 @@ fn span(slots: &[Slot]) -> i32 {
 /// Strip, part of it, first slot, and how many slots each room takes.
 type Spot = (usize, usize, usize, Vec<usize>);
 
-/// Where rooms in a row fit: a drawn one of all places.
-fn place(strips: &Strips, rooms: &[&Template], chance: &mut Chance) -> Option<Spot> {
+/// Where rooms in a row fit: a drawn one of all places, or, packed, the first, so that rooms without others between them lie side by
+/// side.
+fn place(strips: &Strips, rooms: &[&Template], packed: bool, chance: &mut Chance) -> Option<Spot> {
     let mut found: Vec<Spot> = Vec::new();
     for (at, (frame, parts)) in strips.iter().enumerate() {
         for (part, slots) in parts.iter().enumerate() {
@@ -406,6 +407,7 @@ fn place(strips: &Strips, rooms: &[&Template], chance: &mut Chance) -> Option<Sp
         }
     }
     let place = usize::try_from(chance.between((0, i32::try_from(found.len()).unwrap_or(1) - 1))).unwrap_or(0);
+    let place = if packed { 0 } else { place };
     if found.is_empty() { None } else { Some(found.swap_remove(place.min(found.len() - 1))) }
 }
 

@@ -279,8 +279,7 @@ impl Reading {
             return Ok(());
         }
         let properties = properties(place, feature)?;
-        let number = self.number(place, properties)?;
-        self.ids.insert(number, None);
+        self.edge_number(place, properties)?;
         let (from, to) = (self.end(place, properties, "startid")?, self.end(place, properties, "endid")?);
         let notes = self.metadata(place, properties)?;
         let class = notes.and_then(|notes| notes.get("class")).and_then(Value::as_str);
@@ -327,6 +326,18 @@ impl Reading {
             return Err(Unusable::new(at(place, "properties.id"), problem, "nodes and edges share one space of ids"));
         }
         Ok(number)
+    }
+
+    /// Takes the id of an edge; one that another edge has is noted, since graphs that Nav2 ships have such.
+    fn edge_number(&mut self, place: usize, properties: &Map<String, Value>) -> Result<(), Unusable> {
+        let told = properties.get("id").and_then(Value::as_u64);
+        if told.is_some_and(|told| self.ids.get(&told) == Some(&None)) {
+            self.losses.note("ids of edges", at(place, "properties.id"), "another edge has the same; ways have no ids");
+            return Ok(());
+        }
+        let number = self.number(place, properties)?;
+        self.ids.insert(number, None);
+        Ok(())
     }
 
     fn end(&self, place: usize, properties: &Map<String, Value>, key: &str) -> Result<NodeId, Unusable> {
