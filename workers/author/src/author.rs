@@ -41,6 +41,9 @@ pub struct How {
     /// What was changed on the way, in words: forms that the server refused.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub steps: Vec<String>,
+    /// Whether the solver wrote the paths in the author's place.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub by_solver: bool,
     /// Tokens of the input that came from the server's cache.
     pub cached: u64,
     /// Tokens of the output that were thinking and stand in no text.

@@ -184,6 +184,7 @@ pub(crate) fn said(answer: ChatAnswer, prompt: Prompt, style: Style) -> Answer {
             style: Some(style),
             rung: answer.rung.map(|rung| rung.name().to_owned()),
             steps: answer.steps,
+            by_solver: false,
             cached: answer.cached,
             thought: answer.thought,
             estimated: answer.estimated,

@@ -61,7 +61,7 @@ impl Author for BySolver {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         match &question.proposal {
             Some(proposal) if self.answers(question) => {
-                let mut how = How::default();
+                let mut how = How { by_solver: true, ..How::default() };
                 if self.from > 1 {
                     how.steps.push(format!("{REFUSALS} answers of the model were refused: the solver wrote the paths"));
                 }

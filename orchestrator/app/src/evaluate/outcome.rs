@@ -54,7 +54,7 @@ pub(super) struct Outcome {
 #[derive(Debug, Default, Deserialize)]
 struct Told {
     #[serde(default)]
-    model: String,
+    how: socrates_author::How,
     #[serde(default)]
     repairs: Vec<Fault>,
     #[serde(default)]
@@ -104,7 +104,7 @@ impl Outcome {
             self.author_ms += attempt.wall_ms;
             let kept = if attempt.end == Some(AttemptEnd::Succeeded) { &job.artifacts } else { &attempt.artifacts };
             let told = exchange(kept, fetch).unwrap_or_default();
-            self.by_solver += usize::from(told.model == socrates_author::paths_by::NAME);
+            self.by_solver += usize::from(told.how.by_solver);
             let found: Vec<&str> = told.faults.iter().chain(&told.repairs).map(|fault| fault.code.code()).collect();
             for code in &told.injected {
                 let entry = self.injected.entry((stage, code.clone())).or_default();
