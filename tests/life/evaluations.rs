@@ -39,15 +39,10 @@ fn evaluate(folder: &Path, out: &str) -> (Vec<Value>, Vec<String>) {
     assert_eq!(finished.code, 0, "{}\n{}", finished.err, finished.out);
     let json: Value = finished.json();
     let table = std::fs::read_to_string(folder.join(out).join("results.csv")).unwrap();
+    let time = table.lines().next().unwrap().split(',').position(|name| name == "author_ms").unwrap();
     let timeless = |line: &str| {
-        let cells: Vec<&str> = line.split(',').collect();
-        cells
-            .iter()
-            .enumerate()
-            .filter(|(column, _)| *column != 16)
-            .map(|(_, cell)| *cell)
-            .collect::<Vec<_>>()
-            .join(",")
+        let cells = line.split(',').enumerate().filter(|(column, _)| *column != time);
+        cells.map(|(_, cell)| cell).collect::<Vec<_>>().join(",")
     };
     (json["arms"].as_array().unwrap().clone(), table.lines().map(timeless).collect())
 }
