@@ -146,7 +146,7 @@ mod tests {
         for (what, part) in [
             ("an office with a moat", "`moat`"),
             ("two wards", "no kind of building"),
-            ("an office with a meeting room of 900 m²", "rooms `meeting room`: asked 1, 720 to 1"),
+            ("an office with a meeting room of 900 m²", "rooms `meeting room`: area_m2: asked 720 to 1125 m²"),
             (bad.to_str().unwrap(), "line 2"),
             ("nowhere.toml", "nowhere.toml"),
         ] {

@@ -379,7 +379,7 @@ mod tests {
         let told = import(&talk(), &at("nav2-route/graph"), &options).unwrap_err();
         assert!(told.what.contains("no walls of its own"), "{}", told.what);
         let told = export(&talk(), "office", "dxf", None).unwrap_err();
-        assert!(told.what.contains("`dxf`") && told.short().contains("nav2-route"), "{}", told.short());
+        assert!(told.what.contains("`dxf`") && told.hint.contains("nav2-route"), "{told:?}");
     }
 
     #[test]
@@ -402,7 +402,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mine = folder.path().join("mine");
         let told = name(&talk(), "hospital", "p2", "pharmacy", None).unwrap_err();
-        assert!(told.what.contains("no folder") && told.short().contains("--out"), "{}", told.short());
+        assert!(told.what.contains("no folder") && told.hint.contains("--out"), "{told:?}");
         name(&talk(), "hospital", "p2", "pharmacy", Some(&mine)).unwrap();
         let location = socrates_maps::load(&mine).unwrap();
         assert_eq!(location.named("Pharmacy").unwrap().nodes[0].as_str(), "p2");

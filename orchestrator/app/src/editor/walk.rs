@@ -91,7 +91,7 @@ mod tests {
             let walked = walk(&ground, &way.points);
             assert!(walked.arrives, "{from} to {to}: {} s", walked.secs);
             assert!(
-                walked.secs > way.length_m / 1.25 && walked.secs < way.length_m,
+                walked.secs > way.length_m / 1.4 && walked.secs < way.length_m,
                 "{} s for {} m",
                 walked.secs,
                 way.length_m
