@@ -11,7 +11,7 @@ mkdir -p "$1"
 cd "$1"
 small=(--cpus-per-task=1 --mem=100 --time=5)
 
-patience() { for _ in $(seq 600); do ! eval "$1" || return 0; sleep 0.1; done; echo "in vain: $1" >&2; squeue >&2; tail -n 20 ./*.log >&2; return 1; }
+patience() { for _ in $(seq 3000); do ! eval "$1" || return 0; sleep 0.1; done; echo "in vain: $1" >&2; squeue >&2; tail -n 20 ./*.log >&2; return 1; }
 up() { [ -s "$1/endpoint" ] && [ "$(grep -cs '^worker on [a-z]* of' "socrates-$2.log")" = "$3" ]; }
 # Right after a job has begun `scancel` waits and tries again; that it has come is seen by what the job does.
 leave() {

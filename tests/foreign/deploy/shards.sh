@@ -7,24 +7,26 @@
 # shellcheck disable=SC2016 # what is waited for is evaluated later
 set -euo pipefail
 
-told='' lost='' killed='' spared=()
+told='' lost='' killed=''
 slurm=$(cd "$(dirname "$0")/../../../deploy/slurm" && pwd)
 mkdir -p "$1"
 cd "$1"
 shift
-small=(--cpus-per-task=1 --mem=100 --time=5)
+small=(--cpus-per-task=1 --mem=100 --time=10)
+export HELD_PROGRAM=$SOCRATES HELD=$PWD/held
+SOCRATES=$(dirname "$slurm")/../tests/foreign/deploy/held.sh
+mkdir "$HELD"
 
-# The highest number of those that run on a machine and have something to show, but for these: it was begun last and has most to do.
+patience() { for _ in $(seq 3000); do ! eval "$1" || return 0; sleep 0.1; done; echo "in vain: $1" >&2; squeue >&2; tail -n 5 ./*.log >&2; return 1; }
+# One of those that run on a machine and are held in the middle of their work, but for these.
 running() {
   local one
-  for one in $(squeue --noheader --array --jobs "$job" --states RUNNING --nodelist "$1" --format %K | sort -rn); do
-    [[ " ${*:2} " != *" $one "* ]] && begun "$one" && echo "$one" && return 0
+  for one in $(squeue --noheader --array --jobs "$job" --states RUNNING --nodelist "$1" --format %K); do
+    [[ " ${*:2} " != *" $one "* ]] && held "$one" && echo "$one" && return 0
   done
   return 1
 }
-patience() { for _ in $(seq 600); do ! eval "$1" || return 0; sleep 0.1; done; echo "in vain: $1" >&2; squeue >&2; tail -n 5 ./*.log >&2; return 1; }
-# A shard that has something to show, on the disk of its machine.
-begun() { compgen -G "$TMPDIR/socrates-*/$1/*[0-9]" >/dev/null; }
+held() { [ -e "$HELD/at-$1" ]; }
 # Slurm waits two minutes before it begins a job anew; a test does not.
 hasten() {
   local one
@@ -35,17 +37,7 @@ hasten() {
 # Right after a job has begun `scancel` waits and tries again, also where its signal has come; whether it has is what the log says.
 cancel() { patience "timeout 3 scancel $* 2>/dev/null; grep -qs 'CANCEL.* AT' 'socrates-${*: -1}.log'"; }
 ended() { hasten; [ -z "$(squeue --noheader --array --jobs "$1" 2>/dev/null)" ]; }
-
 state() { scontrol show job "$1" | sed -n 's/.*JobState=\([A-Z]*\).*Restarts.*/\1/p; s/.*JobState=\([A-Z]*\).*/\1/p' | head -n 1; }
-# Whether the program of a shard has printed its last line: what struck its job after that left nothing undone.
-said_all() { grep -qs '^next ' "socrates-${job}_$1.log"; }
-# One of those that are left is killed, as for its memory. One that was done before it was struck was not killed: another is.
-strike() {
-  killed=$(running first "$told" "$lost" "${spared[@]}") || return 1
-  cancel --signal=KILL "${job}_$killed"
-  patience '[ -z "$(squeue --noheader --array --jobs "${job}_$killed" --states RUNNING,COMPLETING 2>/dev/null)" ]'
-  [ "$(state "${job}_$killed")" != COMPLETED ] && ! said_all "$killed" || { spared+=("$killed"); return 1; }
-}
 
 # A misspelt option of the file is refused.
 sed 's/--requeue/--reqeue/' "$slurm/shards.sbatch" >misspelt.sbatch
@@ -57,18 +49,25 @@ early=$(sbatch --parsable "${small[@]}" --dependency="afterany:$job" "$slurm/mer
 patience '[ "$(squeue --noheader --array --jobs "$job" --states RUNNING | wc -l)" = 4 ]'
 patience 'told=$(running first)'
 cancel --signal=TERM "${job}_$told"
-# Looked for at the last moment: on a slow machine one that ran before may be done by now.
+touch "$HELD/go-$told"
 patience 'lost=$(running second)'
 kill_node second
-patience strike
+# One of those that are left is killed, as for its memory.
+patience 'killed=$(running first "$told" "$lost")'
+cancel --signal=KILL "${job}_$killed"
+patience '[ -z "$(squeue --noheader --array --jobs "${job}_$killed" --states RUNNING,COMPLETING 2>/dev/null)" ]'
+touch "$HELD/go-all"
 patience 'ended "$job,$early"'
 again=$(SOCRATES_SHARDS=$PWD/socrates-$job sbatch --parsable "${small[@]}" --array="$killed" "$slurm/shards.sbatch" "$@")
 merge=$(sbatch --parsable "${small[@]}" --dependency="afterany:$again" "$slurm/merge.sbatch" "socrates-$job" library)
 patience 'ended "$again,$merge"'
 # What a person takes back stays taken back, although its program ends as one whose time is up.
+HELD=$PWD/held-again
+mkdir "$HELD"
 other=$(sbatch --parsable "${small[@]}" --array=0-1 "$slurm/shards.sbatch" "$@")
-patience 'begun 0 && begun 1'
+patience 'held 0 && held 1'
 cancel "${other}_0"
+touch "$HELD/go-all"
 patience 'ended "$other"'
 
 restarts() { scontrol show job "$1" | sed -n 's/.*Restarts=\([0-9]*\).*/\1/p' | head -n 1; }
