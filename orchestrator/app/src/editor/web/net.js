@@ -47,12 +47,13 @@ function take(state) {
   findingsTimer = setTimeout(look, FINDINGS_AFTER_MS);
 }
 
-// Changes something: waits until everything before is done, then asks with the number of the sketch that is shown.
+// Changes something: waits until everything before is done, then asks with the number of the sketch that is shown. What is asked may be
+// a function, called at that moment: what it reads of the sketch then holds all changes before.
 function change(path, what = {}) {
   busy += 1;
   const mine = turn.then(async () => {
     try {
-      const state = await ask(path, { rev: now.rev, ...what });
+      const state = await ask(path, { rev: now.rev, ...(typeof what === "function" ? what() : what) });
       trouble("");
       take(state);
       return state;
@@ -71,7 +72,7 @@ function change(path, what = {}) {
   return mine;
 }
 
-const edit = (what) => change("/edit", { edit: what });
+const edit = (what) => change("/edit", typeof what === "function" ? () => ({ edit: what() }) : { edit: what });
 
 // Asks what is wrong with the sketch, and for the way that is looked at.
 async function look() {

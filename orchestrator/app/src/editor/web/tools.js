@@ -234,12 +234,19 @@ function showWhere([x, y]) {
 
 // ---- keys
 
+// The edit that takes these nodes and doors elsewhere; those that are gone by then are left out.
+function shifted(nodes, doors, by) {
+  const moves = [], placed = nodes.map(nodeOf).filter(Boolean).map(({ id, at }) => [id, by(at)]);
+  if (placed.length) moves.push({ move_nodes: { nodes: placed } });
+  for (const door of now.sketch.doors.filter(({ id }) => doors.includes(id))) moves.push({ change_door: { id: door.id, door: { ...door, from: by(door.from), to: by(door.to) } } });
+  return moves.length === 1 ? moves[0] : { several: moves };
+}
+
 function arrow(dx, dy) {
   if (choice.size && !now.read_only && tool === "select") {
-    const moves = [];
-    if (choice.nodes.size) moves.push({ move_nodes: { nodes: [...choice.nodes].map((id) => { const [x, y] = nodeOf(id).at; return [id, [x + dx, y + dy]]; }) } });
-    for (const id of choice.doors) { const door = now.sketch.doors.find((one) => one.id === id), by = ([x, y]) => [x + dx, y + dy]; moves.push({ change_door: { id, door: { ...door, from: by(door.from), to: by(door.to) } } }); }
-    if (moves.length) edit(moves.length === 1 ? moves[0] : { several: moves });
+    // Chosen now, placed when its turn comes: keys that follow each other fast all count.
+    const nodes = [...choice.nodes], doors = [...choice.doors], by = ([x, y]) => [x + dx, y + dy];
+    if (nodes.length + doors.length) edit(() => shifted(nodes, doors, by));
     return;
   }
   const [w, h] = stageSize();
