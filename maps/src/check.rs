@@ -252,6 +252,13 @@ fn door_problems(location: &Location, index: usize, door: &Door, found: &mut Vec
 /// Longest name of an area, letters.
 const NAME_MAX: usize = 60;
 
+/// Whether an area may be called so: 1 to 60 letters on one line, with no blank at either end.
+#[must_use]
+pub fn is_area_name(name: &str) -> bool {
+    let letters = name.chars().count();
+    name.trim() == name && (1..=NAME_MAX).contains(&letters) && !name.chars().any(char::is_control)
+}
+
 fn name_problems(location: &Location, index: usize, area: &AreaName, found: &mut Vec<Finding>) {
     let shown: String = area.name.chars().take(NAME_MAX).collect();
     let mut fault = |code: FaultCode, message: String| {
@@ -259,8 +266,7 @@ fn name_problems(location: &Location, index: usize, area: &AreaName, found: &mut
         let place = Where::file(EXTRA).at_key(format_args!("name `{shown}`"));
         found.push(Finding::new(About::Name(index), at, Fault::new(code, place, message)));
     };
-    let letters = area.name.chars().count();
-    if area.name.trim() != area.name || !(1..=NAME_MAX).contains(&letters) || area.name.chars().any(char::is_control) {
+    if !is_area_name(&area.name) {
         fault(
             FaultCode::MValue,
             format!("is no name; allowed: 1 to {NAME_MAX} letters on one line, no blank at either end"),

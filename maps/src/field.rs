@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use socrates_model::{Cell, Grid, Point};
+use socrates_model::{Cell, Grid, Point, Vector};
 
 use crate::layer::{Layer, Raster, floor_index};
 use crate::sectors::Faces;
@@ -72,6 +72,23 @@ impl DistanceField {
     #[must_use]
     pub fn clearance_of_cell(&self, column: usize, row: usize) -> f64 {
         self.lattice.get(column.saturating_mul(2) + 1, row.saturating_mul(2) + 1).map_or(0.0, f64::from)
+    }
+
+    /// The wall that a line from a point meets, as the first point with less clearance than `wall_m`, if it does so within `reach_m`.
+    /// `along` has length 1.
+    #[must_use]
+    pub fn to_wall(&self, from: &Point, along: &Vector, wall_m: f64, reach_m: f64) -> Option<Point> {
+        let mut gone_m = 0.0;
+        while gone_m <= reach_m {
+            let at = from + along * gone_m;
+            let clear_m = self.clearance(&at);
+            if clear_m < wall_m {
+                return Some(at);
+            }
+            // Nothing is nearer than the clearance, which is bilinear between the cells.
+            gone_m += (0.8 * clear_m).max(wall_m);
+        }
+        None
     }
 
     /// The nearest wall point in each of `n` equal angular sectors within `reach_m`, in sector order.

@@ -41,7 +41,7 @@ pub mod random;
 pub mod shipped;
 pub mod written;
 
-pub use check::{check, check_door, findings};
+pub use check::{check, check_door, findings, is_area_name};
 pub use field::{DistanceField, free_disc, nearest_free};
 pub use finding::{About, Finding};
 pub use generate::generate;

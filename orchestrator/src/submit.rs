@@ -179,9 +179,12 @@ impl Turn<'_> {
         let seed_revision =
             if sent_back.is_empty() { former.map_or(0, |former| former.seed_revision) } else { revision };
         let refused = former.filter(|_| !sent_back.is_empty()).and_then(|former| {
-            let artifacts = &former.result.as_ref()?.artifacts;
-            let left = || self.left_of(id, stage, revision.checked_sub(1)?);
-            pipeline::refused(artifacts).or_else(left).or_else(|| pipeline::output(artifacts, Role::made_by(stage)?))
+            // What a person left of it counts, where it is newer.
+            let holds = || {
+                let writer = self.writer(&key, stage).and_then(|writer| self.job(&writer));
+                self.output_of(writer.unwrap_or(former), Role::made_by(stage)?)
+            };
+            pipeline::refused(&former.result.as_ref()?.artifacts).or_else(holds)
         });
         let spec = JobSpec {
             key: key.clone(),
@@ -217,24 +220,18 @@ impl Turn<'_> {
         Some(key)
     }
 
-    /// What a person left of a stage's output at a look of this revision, where they changed it.
-    fn left_of(&self, id: &ScenarioId, stage: Stage, revision: u32) -> Option<Digest> {
-        let saw = |look: &Look| pipeline::is_after(Stage::Review, &(*look).into(), stage);
-        let looks = Look::ALL.into_iter().rev().filter(saw);
-        let mut found = looks.filter_map(|look| self.job(self.state.look(id, look, revision)?));
-        found.find_map(|job| pipeline::output(&job.result.as_ref()?.artifacts, Role::made_by(stage)?))
-    }
-
     /// Which job each input comes from.
     fn sources(&self, key: &JobKey) -> BTreeMap<Role, JobKey> {
         let written = [Stage::Proposal, Stage::Paths, Stage::Behaviors]
             .into_iter()
             .filter(|stage| pipeline::is_after(key.stage, &key.item, *stage))
-            .filter_map(|stage| Some((Role::made_by(stage)?, self.writer(key, Some(stage))?)));
+            .filter_map(|stage| Some((Role::made_by(stage)?, self.writer(key, stage)?)));
         let mut sources: BTreeMap<Role, JobKey> = written.collect();
-        // An author may read the request itself, and a person's wishes may change what it is read as.
-        let told_by = pipeline::is_after(key.stage, &key.item, Stage::Proposal).then_some(Stage::Proposal);
-        let teller = self.writer(key, told_by).or_else(|| self.read_before(key));
+        // An author may read the request itself, and a person's wishes may change what it is read as; the next proposal is told of it.
+        let is_told = |teller: &JobKey| {
+            key.stage != Stage::Proposal || self.job(teller).is_some_and(|job| job.state == JobState::Succeeded)
+        };
+        let teller = self.writer(key, Stage::Proposal).filter(is_told);
         sources.extend(teller.map(|teller| (Role::Reading, teller)));
         if key.stage == Stage::Review && key.item.look() == Some(Look::Proposal) {
             // The author may have proposed several; the person may take another.
@@ -255,26 +252,25 @@ impl Turn<'_> {
         sources
     }
 
-    /// The proposal that was made before this one: who reads the request is shown how they read it.
-    fn read_before(&self, key: &JobKey) -> Option<JobKey> {
-        let before = key.revision.checked_sub(1).filter(|_| key.stage == Stage::Proposal)?;
-        let former = self.state.place(&key.scenario, Stage::Proposal, &Item::Whole, before)?;
-        self.job(former).filter(|job| job.state == JobState::Succeeded).map(|_| former.clone())
-    }
-
     /// The job whose version of a stage's output holds for the job `key`: the newest, and among equally new ones what a
-    /// person left of it. Without a stage: the newest look, for what only a look changes.
-    fn writer(&self, key: &JobKey, stage: Option<Stage>) -> Option<JobKey> {
-        let author = stage.and_then(|stage| self.state.place(&key.scenario, stage, &Item::Whole, key.revision));
+    /// person left of it.
+    fn writer(&self, key: &JobKey, stage: Stage) -> Option<JobKey> {
+        let author = self.state.place(&key.scenario, stage, &Item::Whole, key.revision);
         let looks = Look::ALL.into_iter().filter_map(|look| {
             // A look that comes later in the plan speaks for the next revision only.
             let waits = pipeline::is_after_look(key.stage, &key.item, look);
             let newest = if waits { key.revision } else { key.revision.checked_sub(1)? };
-            let saw = stage.is_none_or(|stage| pipeline::is_after(Stage::Review, &look.into(), stage));
+            let saw = pipeline::is_after(Stage::Review, &look.into(), stage);
             saw.then(|| self.state.look(&key.scenario, look, newest))?
         });
         // `max_by_key` takes the last of equals: the look at the draft, the look at the proposal, the author.
         author.into_iter().chain(looks).max_by_key(|job| job.revision).cloned()
+    }
+
+    /// What a job made in a role; a look that hands nothing back leaves it as it was.
+    fn output_of(&self, job: &Job, role: Role) -> Option<Digest> {
+        let made = pipeline::output(&job.result.as_ref()?.artifacts, role.made_as());
+        made.or_else(|| (job.key.stage == Stage::Review).then(|| job.spec.inputs.get(&role).copied()).flatten())
     }
 
     /// Looks whether a blocked job has all it waits for: it becomes ready, is done already, or
@@ -324,12 +320,7 @@ impl Turn<'_> {
         };
         inputs.extend(scenario.spec.pinned.iter().filter(|(role, _)| wanted(**role)).map(|(role, d)| (*role, *d)));
         for (role, source) in &job.sources {
-            let Some(parent) = self.job(source) else { continue };
-            let Some(result) = &parent.result else { continue };
-            let digest = pipeline::output(&result.artifacts, role.made_as()).or_else(|| {
-                // A look that hands nothing back leaves it as it was.
-                (source.stage == Stage::Review).then(|| parent.spec.inputs.get(role).copied()).flatten()
-            });
+            let digest = self.job(source).and_then(|parent| self.output_of(parent, *role));
             inputs.extend(digest.map(|digest| (*role, digest)));
         }
         if let Some(job) = self.job_mut(key) {

@@ -101,12 +101,12 @@ impl Question {
             }
             Stage::Behaviors => messages.push(Message::text(Role::User, self.behaviors_outline(style))),
         }
-        let example = if naive { String::new() } else { passing::told(self, style) };
+        let example = passing::told(self, style);
         messages.extend(feedback::messages(&self.feedback, shown::again(self, style).as_deref(), &example));
         Prompt { messages, schema: (!naive).then(|| answer_schema(self, style)), template }
     }
 
-    /// Proposals that the answer should hold. Who is shown a refused one mends that one.
+    /// Proposals that the answer should hold. An author that is shown a refused one mends that one.
     #[must_use]
     pub fn variants(&self, style: &Style) -> u32 {
         if self.stage == Stage::Proposal && self.refused.is_none() { style.variants } else { 1 }

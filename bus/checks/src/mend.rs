@@ -16,7 +16,7 @@ use socrates_model::{
 };
 
 use crate::lexicon::{humans_named, impossible};
-use crate::people::{DISTANCE_M, SPEED_MPS, others};
+use crate::people::{DISTANCE_M, SPEED_MPS, WAITS_S, others, rule_faults};
 use crate::places::{classes_of, nodes_of};
 use crate::proposal::{check_proposal, robot_says, script_line};
 use crate::{limits, verify, wishes};
@@ -41,7 +41,7 @@ type Mend = fn(&mut Proposal, &Given<'_>);
 
 /// What makes right what a code names, in the order in which the parts depend on each other.
 const MENDS: &[(FaultCode, Mend)] = &[
-    // Who is missing comes first: what is said of them stays.
+    // People who are missing come first: what is said of them stays.
     (FaultCode::PCount, counted),
     (FaultCode::PName, named),
     (FaultCode::PCap, able),
@@ -145,25 +145,27 @@ fn by_rules(human: &HumanProposal) -> String {
 
 /// P-CAP: words and numbers that can be simulated.
 fn able(proposal: &mut Proposal, _given: &Given<'_>) {
-    let all: Vec<(HumanId, u32)> = proposal.humans.iter().map(|human| (human.id, human.steps())).collect();
+    let whole = proposal.clone();
     for human in &mut proposal.humans {
-        let known = |id: HumanId| id != human.id && all.iter().any(|(other, _)| *other == id);
+        // The check itself says of each part, alone in a rule, whether it can be simulated.
+        let takes = |part: Rule| {
+            let when = if part.when.is_empty() { vec![Trigger::Always] } else { part.when };
+            rule_faults(human.id, &Rule { when, ..part }, &whole).is_empty()
+        };
+        let can = |trigger: &Trigger| takes(Rule { when: vec![trigger.clone()], ..Rule::default() });
+        let nearest = |triggers: &[Trigger]| -> Vec<Trigger> { triggers.iter().map(in_range).filter(can).collect() };
         for rule in &mut human.rules {
-            rule.when.retain(|trigger| waits_for(trigger, known, &all));
-            rule.until.retain(|trigger| waits_for(trigger, known, &all));
-            for trigger in rule.when.iter_mut().chain(&mut rule.until) {
-                *trigger = in_range(trigger);
-            }
+            (rule.when, rule.until) = (nearest(&rule.when), nearest(&rule.until));
             if rule.when.is_empty() {
                 rule.when.push(Trigger::RobotNear(MEETS_M));
             }
-            if let Action::FollowHuman(id) | Action::LookAt(id) = rule.act
-                && !known(id)
-            {
+            if !takes(Rule { act: rule.act.clone(), ..Rule::default() }) {
                 rule.act = Action::LookAtRobot;
             }
-            rule.to = rule.to.filter(|to| !matches!(to, AgentId::Human(id) if !known(*id)));
-            rule.for_s = rule.for_s.map(|secs| if secs > 0.0 { secs.min(600.0) } else { REACTS_S });
+            rule.to = rule.to.filter(|to| takes(Rule { to: Some(*to), ..Rule::default() }));
+            if !takes(Rule { for_s: rule.for_s, ..Rule::default() }) {
+                rule.for_s = Some(REACTS_S);
+            }
         }
         human.speed_mps = human.speed_mps.map(|speed| speed.clamp(SPEED_MPS.0, SPEED_MPS.1));
         if human.behavior.trim().is_empty() || !impossible(&human.behavior).is_empty() {
@@ -172,33 +174,13 @@ fn able(proposal: &mut Proposal, _given: &Given<'_>) {
     }
 }
 
-/// Whether a trigger waits for somebody who is there and does so much.
-fn waits_for(trigger: &Trigger, known: impl Fn(HumanId) -> bool, all: &[(HumanId, u32)]) -> bool {
-    match trigger {
-        Trigger::Did(id, step) => *step > 0 && all.iter().any(|(other, steps)| other == id && step <= steps),
-        Trigger::Done(id) | Trigger::HumanSays(id, _) => known(*id),
-        Trigger::Always
-        | Trigger::RobotVisible(_)
-        | Trigger::RobotNear(_)
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_)
-        | Trigger::StoppedFor(_) => true,
-    }
-}
-
 /// The trigger with its number in the range that can be simulated.
 fn in_range(trigger: &Trigger) -> Trigger {
     if let Trigger::AfterSecs(secs) = trigger {
-        return Trigger::AfterSecs(secs.clamp(0.0, 600.0));
+        return Trigger::AfterSecs(secs.clamp(WAITS_S.0, WAITS_S.1));
     }
     if let Trigger::StoppedFor(secs) = trigger {
-        return Trigger::StoppedFor(secs.clamp(0.0, 600.0));
+        return Trigger::StoppedFor(secs.clamp(WAITS_S.0, WAITS_S.1));
     }
     let distance = trigger.distance_m().map(|distance| distance.clamp(DISTANCE_M.0, DISTANCE_M.1));
     distance.map_or_else(|| trigger.clone(), |distance| trigger.clone().at_distance(distance))

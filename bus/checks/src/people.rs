@@ -1,4 +1,4 @@
-//! Who is in the proposal: P-COUNT, P-NAME, P-CAP, P-OTHER.
+//! The people of the proposal: P-COUNT, P-NAME, P-CAP, P-OTHER.
 
 use std::collections::BTreeSet;
 
@@ -11,6 +11,8 @@ use crate::list;
 
 /// Smallest and largest distance a trigger may name, m.
 pub(crate) const DISTANCE_M: (f64, f64) = (0.3, 15.0);
+/// Shortest and longest time that a trigger may wait, s; a rule lasts no longer.
+pub(crate) const WAITS_S: (f64, f64) = (0.0, 600.0);
 /// Smallest and largest desired speed, m/s.
 pub(crate) const SPEED_MPS: (f64, f64) = (0.2, 1.8);
 
@@ -125,7 +127,8 @@ fn abilities(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
     faults
 }
 
-fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
+/// What of a rule cannot be simulated.
+pub(crate) fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
     let mut wrong = Vec::new();
     if rule.when.is_empty() {
         wrong.push("has no trigger; give one or more, `always` for none in particular".to_owned());
@@ -140,8 +143,8 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
                 }
             }
             Trigger::AfterSecs(s) | Trigger::StoppedFor(s) => {
-                if !(0.0..=600.0).contains(s) {
-                    wrong.push(format!("waits {s} s; allowed: 0 to 600 s"));
+                if !(WAITS_S.0..=WAITS_S.1).contains(s) {
+                    wrong.push(format!("waits {s} s; allowed: {} to {} s", WAITS_S.0, WAITS_S.1));
                 }
             }
             Trigger::Did(id, step) => {
@@ -179,8 +182,8 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
     {
         wrong.push(format!("makes a sign to {id}; allowed: {}", others()));
     }
-    if let Some(s) = rule.for_s.filter(|s| !(*s > 0.0 && *s <= 600.0)) {
-        wrong.push(format!("lasts {s} s; allowed: more than 0 and at most 600 s"));
+    if let Some(s) = rule.for_s.filter(|s| !(*s > 0.0 && *s <= WAITS_S.1)) {
+        wrong.push(format!("lasts {s} s; allowed: more than 0 and at most {} s", WAITS_S.1));
     }
     wrong
 }

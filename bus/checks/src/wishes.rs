@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use socrates_model::{
-    AgentId, Clause, Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger,
-    Where,
+    AgentId, Fact, FactKind, Fault, FaultCode, Gesture, GroupProposal, HumanId, Predicate, Proposal, Reading, Relation,
+    Rule, Trigger, Where,
 };
 
 use crate::list;
@@ -16,158 +16,121 @@ pub(crate) fn check(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
 }
 
 /// What a proposal lacks of a fact.
-#[expect(clippy::too_many_lines, reason = "a table: one short arm for each kind of fact")]
 pub(crate) fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
     let quote = if fact.quote.is_empty() { String::new() } else { format!(" (asked for by \"{}\")", fact.quote) };
-    let rough = |at: Where, message: String| Some(Fault::new(FaultCode::PRough, at, format!("{message}{quote}")));
-    match &fact.kind {
-        FactKind::Humans(count) => {
-            let listed = proposal.humans.len();
-            (listed != *count as usize).then(|| {
-                Fault::new(FaultCode::PCount, "humans", format!("lists {listed} humans, asked for were {count}{quote}"))
-            })
-        }
+    if let FactKind::Humans(count) = fact.kind {
+        let listed = proposal.humans.len();
+        return (listed != count as usize).then(|| {
+            Fault::new(FaultCode::PCount, "humans", format!("lists {listed} humans, asked for were {count}{quote}"))
+        });
+    }
+    let (at, message) = rough(&fact.kind, proposal)?;
+    Some(Fault::new(FaultCode::PRough, at, format!("{message}{quote}")))
+}
+
+/// A place and a message, unless it is as it was asked for.
+fn unless(holds: bool, at: impl Into<Where>, message: impl FnOnce() -> String) -> Option<(Where, String)> {
+    (!holds).then(|| (at.into(), message()))
+}
+
+/// Where a proposal departs from what was asked for, and how.
+fn rough(kind: &FactKind, proposal: &Proposal) -> Option<(Where, String)> {
+    let asks = |wanted: &dyn Fn(&Predicate) -> bool| proposal.expected_events.iter().any(|one| wanted(&one.predicate));
+    let robot = &proposal.robot;
+    match kind {
         FactKind::Group { group, members } => {
             let wanted: BTreeSet<HumanId> = members.iter().copied().collect();
-            let there =
-                proposal.groups.iter().any(|found| found.members.iter().copied().collect::<BTreeSet<_>>() == wanted);
-            if there {
-                None
-            } else {
-                rough((*group).into(), format!("no group has exactly the members {}", list(&wanted)))
-            }
+            let has = |found: &GroupProposal| found.members.iter().copied().collect::<BTreeSet<_>>() == wanted;
+            unless(proposal.groups.iter().any(has), *group, || {
+                format!("no group has exactly the members {}", list(&wanted))
+            })
         }
         FactKind::Reacts { human, rule } => {
-            let Some(found) = proposal.human(*human) else { return rough((*human).into(), "is missing".to_owned()) };
-            if found.rules.iter().any(|other| covers(other, rule)) {
-                None
-            } else {
-                rough(
-                    (*human).into(),
-                    format!("has no rule for: {}; its rules: {}", rule.phrase(), rules_in_words(&found.rules)),
-                )
-            }
+            let Some(found) = proposal.human(*human) else { return unless(false, *human, || "is missing".to_owned()) };
+            unless(found.rules.iter().any(|other| covers(other, rule)), *human, || {
+                format!("has no rule for: {}; its rules: {}", rule.phrase(), rules_in_words(&found.rules))
+            })
         }
         FactKind::Relates { human, relation } => {
             let found = proposal.human(*human)?.relation;
             // A human who comes out and crosses the robot's way does both.
-            let crosses =
-                |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if who == human);
-            let both = (found, *relation) == (socrates_model::Relation::Leaving, socrates_model::Relation::Crossing)
-                && proposal.expected_events.iter().any(crosses);
-            if found == *relation || both {
-                None
-            } else {
-                rough(
-                    (*human).into(),
-                    format!("has the relation `{}`, asked for was `{}`", found.name(), relation.name()),
-                )
-            }
+            let crosses = |test: &Predicate| matches!(test, Predicate::Crosses { human: who, .. } if who == human);
+            let both = (found, *relation) == (Relation::Leaving, Relation::Crossing) && asks(&crosses);
+            unless(found == *relation || both, *human, || {
+                format!("has the relation `{}`, asked for was `{}`", found.name(), relation.name())
+            })
         }
-        FactKind::Side { human, side } => {
-            if proposal.human(*human)?.side == Some(*side) {
-                None
-            } else {
-                rough((*human).into(), format!("has not the side `{}`", side.name()))
-            }
-        }
+        FactKind::Side { human, side } => unless(proposal.human(*human)?.side == Some(*side), *human, || {
+            format!("has not the side `{}`", side.name())
+        }),
         FactKind::Facing { human, facing } => {
-            if proposal.human(*human)?.facing.as_ref() == Some(facing) {
-                None
-            } else {
-                rough((*human).into(), format!("does not face {}", facing.phrase()))
-            }
+            unless(proposal.human(*human)?.facing.as_ref() == Some(facing), *human, || {
+                format!("does not face {}", facing.phrase())
+            })
         }
         FactKind::MeetsTimes { human, times, .. } => {
-            let asks = |clause: &Clause| matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times);
-            if *times < 2 || proposal.expected_events.iter().any(asks) {
-                None
-            } else {
-                let what = format!("has no `meets_again` clause with nth {times}; asked for were {times} meetings");
-                rough((*human).into(), what)
-            }
+            let again = |test: &Predicate| matches!(test, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times);
+            unless(*times < 2 || asks(&again), *human, || {
+                format!("has no `meets_again` clause with nth {times}; asked for were {times} meetings")
+            })
         }
         FactKind::Before { first, then, at_door } => {
             let wanted = Predicate::Before { first: *first, then: *then, at_door: *at_door };
-            let asks = |clause: &Clause| clause.predicate == wanted;
-            if proposal.expected_events.iter().any(asks) {
-                None
-            } else {
-                rough((*then).into(), format!("has no `before` clause; asked for was {first} before {then}"))
-            }
+            unless(asks(&|test| *test == wanted), *then, || {
+                format!("has no `before` clause; asked for was {first} before {then}")
+            })
         }
         FactKind::Gestures { human, gesture } => {
-            let found = proposal.human(*human)?;
-            if found.rules.iter().any(|rule| rule.gesture == Some(*gesture)) {
-                None
-            } else {
-                rough((*human).into(), format!("has no rule with the gesture {gesture}"))
-            }
+            let has = proposal.human(*human)?.rules.iter().any(|rule| rule.gesture == Some(*gesture));
+            unless(has, *human, || format!("has no rule with the gesture {gesture}"))
         }
         FactKind::GesturesTo { human, gesture, to } => {
-            let found = proposal.human(*human)?;
-            if found.rules.iter().any(|rule| rule.gesture == Some(*gesture) && rule.to == Some(*to)) {
-                None
-            } else {
-                rough((*human).into(), format!("has no rule with the gesture {gesture} to {to}"))
-            }
+            let fits = |rule: &Rule| rule.gesture == Some(*gesture) && rule.to == Some(*to);
+            unless(proposal.human(*human)?.rules.iter().any(fits), *human, || {
+                format!("has no rule with the gesture {gesture} to {to}")
+            })
         }
         FactKind::Place(class) => {
-            let clause = proposal
-                .expected_events
-                .iter()
-                .any(|clause| matches!(clause.predicate, Predicate::EncounterAt { place, .. } if place == *class));
-            if proposal.place == *class || clause {
-                None
-            } else {
-                rough("place".into(), format!("is `{}`, asked for was `{class}`", proposal.place))
-            }
+            let there = |test: &Predicate| matches!(test, Predicate::EncounterAt { place, .. } if place == class);
+            unless(proposal.place == *class || asks(&there), "place", || {
+                format!("is `{}`, asked for was `{class}`", proposal.place)
+            })
         }
         FactKind::RobotSays(gesture) => {
             let said = robot_says(proposal);
-            if said.contains(gesture) {
-                None
-            } else {
-                rough(Where::robot("script"), format!("never says {gesture}; it says {}", list(&said)))
-            }
+            unless(said.contains(gesture), Where::robot("script"), || {
+                format!("never says {gesture}; it says {}", list(&said))
+            })
         }
         FactKind::Pace { human, mps } => {
             let found = proposal.human(*human)?.speed_mps;
-            let told = found.map_or_else(|| "has no pace".to_owned(), |found| format!("walks at {found} m/s"));
-            if found == Some(*mps) { None } else { rough((*human).into(), format!("{told}, asked for were {mps} m/s")) }
+            let told = || found.map_or_else(|| "has no pace".to_owned(), |found| format!("walks at {found} m/s"));
+            unless(found == Some(*mps), *human, || format!("{}, asked for were {mps} m/s", told()))
         }
         FactKind::Goal { human, name, .. } => {
-            let found = proposal.human(*human)?.goal.is_some();
-            if found { None } else { rough((*human).into(), format!("does not go to {name}")) }
+            unless(proposal.human(*human)?.goal.is_some(), *human, || format!("does not go to {name}"))
         }
-        FactKind::RobotDoes(line) => {
-            let found = proposal.robot.script.contains(line);
-            if found { None } else { rough(Where::robot("script"), format!("has no line for: {}", line.phrase())) }
-        }
+        FactKind::RobotDoes(line) => unless(robot.script.contains(line), Where::robot("script"), || {
+            format!("has no line for: {}", line.phrase())
+        }),
         FactKind::RobotStart(class) => {
-            let found = proposal.robot.start;
-            if found == Some(*class) { None } else { rough(Where::robot("start"), format!("is not `{class}`")) }
+            unless(robot.start == Some(*class), Where::robot("start"), || format!("is not `{class}`"))
         }
         FactKind::RobotGoal(class) => {
-            let found = proposal.robot.goal;
-            if found == Some(*class) { None } else { rough(Where::robot("goal"), format!("is not `{class}`")) }
+            unless(robot.goal == Some(*class), Where::robot("goal"), || format!("is not `{class}`"))
         }
-        FactKind::Pattern(card) => {
-            if proposal.pattern == *card {
-                None
-            } else {
-                rough("pattern".into(), format!("is `{}`, asked for was `{card}`", proposal.pattern))
-            }
+        FactKind::Pattern(card) => unless(proposal.pattern == *card, "pattern", || {
+            format!("is `{}`, asked for was `{card}`", proposal.pattern)
+        }),
+        FactKind::Asked { of: Some(AgentId::Human(human)) } => {
+            unless(proposal.human(*human).is_some(), *human, || "is missing".to_owned())
         }
         // An empty task is P-ROBOT; whether prose means the same as prose is not judged here. Where the robot's way leads by name
-        // is written from the facts, or given up with a note.
-        FactKind::RobotTask(_) | FactKind::RobotAt { .. } => None,
-        FactKind::Asked { of } => match of {
-            Some(AgentId::Human(human)) if proposal.human(*human).is_none() => {
-                rough((*human).into(), "is missing".to_owned())
-            }
-            Some(_) | None => None,
-        },
+        // is written from the facts, or given up with a note. People are counted apart.
+        FactKind::RobotTask(_)
+        | FactKind::RobotAt { .. }
+        | FactKind::Humans(_)
+        | FactKind::Asked { of: None | Some(AgentId::Robot) } => None,
     }
 }
 
@@ -188,7 +151,7 @@ fn rules_in_words(rules: &[Rule]) -> String {
 mod tests {
     use super::*;
     use crate::testing::{codes, crossing_proposal, reading_of};
-    use socrates_model::{Action, Relation};
+    use socrates_model::Action;
 
     #[test]
     fn every_dropped_wish_is_named_with_its_words() {

@@ -38,42 +38,42 @@ pub enum FactKind {
     },
     /// A human reacts by a rule.
     Reacts {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// How.
         rule: Rule,
     },
     /// A human stands to the robot's way like this.
     Relates {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// How.
         relation: Relation,
     },
     /// A human comes from, stands on or walks on this side of the robot's way.
     Side {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Which side.
         side: Side,
     },
     /// A human who stands faces so before they react.
     Facing {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Where.
         facing: Facing,
     },
     /// A human walks at this pace.
     Pace {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The speed, m/s.
         mps: f64,
     },
     /// A human goes to a place.
     Goal {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The place in the words of the request.
         name: String,
@@ -82,7 +82,7 @@ pub enum FactKind {
     },
     /// A human meets the robot several times.
     MeetsTimes {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// How often, from 2.
         times: u32,
@@ -93,9 +93,9 @@ pub enum FactKind {
     /// One is there before the other: two humans where each of them meets the robot, or a human and the robot where they
     /// meet.
     Before {
-        /// Who is there first.
+        /// The agent that is there first.
         first: AgentId,
-        /// Who is there later.
+        /// The agent that is there later.
         then: AgentId,
         /// Whether at the door of the room or car of whoever leaves it, or of the robot's goal, instead: the first of them gets through it first.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -103,14 +103,14 @@ pub enum FactKind {
     },
     /// A human makes a gesture.
     Gestures {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Which.
         gesture: Gesture,
     },
     /// A human makes a gesture to somebody: to the robot, or to another human.
     GesturesTo {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Which.
         gesture: Gesture,
@@ -179,7 +179,7 @@ impl ReadBy {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReadHuman {
-    /// Who.
+    /// The human.
     pub id: HumanId,
     /// Role word: person, nurse, employee …
     pub role: String,

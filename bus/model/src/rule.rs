@@ -32,7 +32,7 @@ pub enum Trigger {
     GoalReached,
     /// The human is at the node where it meets the robot; of several, the first.
     AtEncounter,
-    /// So many seconds after the start of the run.
+    /// Time since the start of the run, s.
     AfterSecs(f64),
     /// The robot has moved before and has stood for so many seconds.
     StoppedFor(f64),
@@ -339,7 +339,7 @@ pub enum RobotWhen {
     HumanSays(Gesture),
     /// It reaches the encounter node of this human; of several, the first.
     AtEncounter(HumanId),
-    /// So many seconds after the start.
+    /// Time since the start, s.
     AfterSecs(f64),
 }
 

@@ -104,7 +104,8 @@ fn narrowest(field: &DistanceField, at: &Point) -> Option<Chord> {
     let line = |turn: u32| {
         let (sin, cos) = libm::sincos(f64::from(turn) * std::f64::consts::PI / f64::from(TURNS));
         let along = Vector::new(cos, sin);
-        let (to, from) = to_wall(field, at, &along, WIDTH_M.1).zip(to_wall(field, at, &-along, WIDTH_M.1))?;
+        let wall = |along: &Vector| field.to_wall(at, along, WALL_M, WIDTH_M.1);
+        let (to, from) = wall(&along).zip(wall(&-along))?;
         Some(Chord { from, to, at: *at, width_m: (to - from).norm() })
     };
     // Of a line that only cuts a corner off, the middle is nearer to the walls than its ends are.
@@ -113,20 +114,6 @@ fn narrowest(field: &DistanceField, at: &Point) -> Option<Chord> {
     let fits = |chord: &Chord| (WIDTH_M.0..=WIDTH_M.1).contains(&chord.width_m) && faces(chord);
     let chords = (0..TURNS).filter_map(line).filter(fits);
     chords.min_by(|a, b| a.width_m.total_cmp(&b.width_m))
-}
-
-/// The wall that a line from a point meets, if it does so within reach.
-fn to_wall(field: &DistanceField, from: &Point, along: &Vector, reach_m: f64) -> Option<Point> {
-    let mut gone_m = 0.0;
-    while gone_m <= reach_m {
-        let at = from + along * gone_m;
-        let clear_m = field.clearance(&at);
-        if clear_m < WALL_M {
-            return Some(at);
-        }
-        gone_m += (0.8 * clear_m).max(WALL_M);
-    }
-    None
 }
 
 /// The nodes that lie behind a line: of the two parts into which it cuts the edges, the smaller one; none where it cuts off nothing.
@@ -179,7 +166,10 @@ pub fn elevator(sketch: &Sketch, location: &Location, at: &Opening) -> Option<Ed
     let along = (to - from).normalize();
     let across = Vector::new(-along.y, along.x);
     let depth = |way: Vector| {
-        to_wall(ground.field(), &(middle + way * 0.3), &way, DEEP_M).map_or(DEEP_M, |wall| (wall - middle).norm())
+        ground
+            .field()
+            .to_wall(&(middle + way * 0.3), &way, WALL_M, DEEP_M)
+            .map_or(DEEP_M, |wall| (wall - middle).norm())
     };
     let (one, other) = (depth(across), depth(-across));
     let (inward, deep_m, free_m) = if one <= other { (across, one, other) } else { (-across, other, one) };

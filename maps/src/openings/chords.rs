@@ -80,26 +80,12 @@ fn narrowest(field: &DistanceField, at: &Point, ahead: &Vector) -> Option<Chord>
     let lines = TURNS.iter().filter_map(|turn| {
         let (sin, cos) = libm::sincos(*turn);
         let across = Vector::new(-ahead.y * cos - ahead.x * sin, ahead.x * cos - ahead.y * sin);
-        let (from, to) = to_wall(field, at, &across).zip(to_wall(field, at, &-across))?;
+        let wall = |along: &Vector| field.to_wall(at, along, WALL_M, REACH_M);
+        let (from, to) = wall(&across).zip(wall(&-across))?;
         Some(Chord { from, to, at: *at, ahead: *ahead, width_m: (to - from).norm() })
     });
     // At a right angle unless another one is shorter by more than a cell makes of it.
     lines.reduce(|best, line| if line.width_m < best.width_m - EQUAL_M / 2.0 { line } else { best })
-}
-
-/// The wall that a line from a point meets, if it does so within reach.
-fn to_wall(field: &DistanceField, from: &Point, along: &Vector) -> Option<Point> {
-    let mut gone_m = 0.0;
-    while gone_m <= REACH_M {
-        let at = from + along * gone_m;
-        let clear_m = field.clearance(&at);
-        if clear_m < WALL_M {
-            return Some(at);
-        }
-        // Nothing is nearer than the clearance, which is bilinear between the cells.
-        gone_m += (0.8 * clear_m).max(WALL_M);
-    }
-    None
 }
 
 /// Whether the floor is wider than the line right before it or right behind it: across a corridor of one width there is no opening.

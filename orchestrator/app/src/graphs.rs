@@ -74,12 +74,8 @@ pub fn export(talk: &Printer, name: &str, to: &str, out: Option<&Path>) -> Resul
         GraphFormat::Rmf => rmf::write(&location),
     };
     let list = out.with_file_name(NOT_CARRIED);
-    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder {
-        std::fs::create_dir_all(folder).map_err(|why| cannot(folder, &why))?;
-    }
     for (path, text) in [(&out, &text), (&list, &losses.json(format.name()))] {
-        std::fs::write(path, text).map_err(|why| cannot(path, &why))?;
+        files::write(path, text.as_bytes())?;
     }
     let (nodes, edges) = (location.graph.nodes().len(), location.graph.edges().len());
     talk.line(&format!("carried    {}, {} of {}", plural(nodes, "node"), plural(edges, "edge"), location.name));
@@ -94,10 +90,6 @@ pub fn export(talk: &Printer, name: &str, to: &str, out: Option<&Path>) -> Resul
         "not_carried": losses.rows(),
     }));
     Ok(())
-}
-
-fn cannot(path: &Path, why: &std::io::Error) -> Complaint {
-    Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
 }
 
 /// Says what was left behind, a kind to a line.
@@ -275,17 +267,14 @@ fn fitting(read: &mut Read) {
         }
     }
     read.graph.doors = doors;
-    let fits = |name: &str| {
-        name.trim() == name && (1..=60).contains(&name.chars().count()) && !name.chars().any(char::is_control)
-    };
-    for area in read.graph.names.iter().filter(|area| !fits(&area.name)) {
+    for area in read.graph.names.iter().filter(|area| !socrates_maps::is_area_name(&area.name)) {
         read.losses.note(
             "names",
             area.name.chars().take(80).collect::<String>(),
             "a name has at most 60 letters on one line",
         );
     }
-    read.graph.names.retain(|area| fits(&area.name));
+    read.graph.names.retain(|area| socrates_maps::is_area_name(&area.name));
 }
 
 /// Gives an area of a location folder a name, which requests may then use.

@@ -38,7 +38,7 @@ pub(crate) struct Words {
     pub(crate) policy: &'static str,
 }
 
-/// Who is let in, and what the others are told.
+/// What opens the door, and what the others are told.
 #[derive(Debug)]
 pub(crate) struct Door {
     /// The rules.

@@ -4,130 +4,16 @@
 //!
 //! A line has the FNV-1a hash of the text (64 bits), whether something was said to be a problem, and the facts as the corpora write them.
 
-#![expect(clippy::print_stdout, clippy::wildcard_enum_match_arm, reason = "the lines are the result, of some facts")]
+#![expect(clippy::print_stdout, reason = "the lines are the result")]
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+mod corpora;
 
-use serde::Deserialize;
-use socrates_model::{FactKind, Location, Reading, Request};
-
-#[derive(Deserialize)]
-struct Corpus {
-    request: Vec<Case>,
-}
-
-#[derive(Deserialize)]
-struct Case {
-    on: String,
-    text: String,
-}
+use corpora::{each, facts, hash};
 
 fn main() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
-    let mut names: Vec<_> =
-        std::fs::read_dir(&folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
-    names.sort();
-    let mut locations: BTreeMap<String, Location> = BTreeMap::new();
-    for path in names.iter().filter(|path| path.extension().is_some_and(|ext| ext == "toml")) {
-        let Ok(text) = std::fs::read_to_string(path) else { continue };
-        let Ok(corpus) = toml::from_str::<Corpus>(&text) else { continue };
-        for case in &corpus.request {
-            if !locations.contains_key(&case.on)
-                && let Ok(location) = socrates_maps::shipped::load(&case.on)
-            {
-                locations.insert(case.on.clone(), location);
-            }
-            let Some(location) = locations.get(&case.on) else { continue };
-            let request = serde_json::from_value::<Request>(serde_json::json!({
-                "location": case.on, "social_context": "", "task": "Deliver mail", "rough_scenario": case.text,
-            }));
-            let Ok(request) = request else { continue };
-            let reading = socrates_offline::understood(&request, location, socrates_model::ReadBy::Grammar);
-            let facts: Vec<String> = facts(&reading).into_iter().collect();
-            println!("{:016x}\t{}\t{}", hash(&case.text), !reading.problems.is_empty(), facts.join(";"));
-        }
-    }
-}
-
-fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
-}
-
-fn number(value: f64) -> String {
-    format!("{value}")
-}
-
-fn facts(reading: &Reading) -> BTreeSet<String> {
-    let mut facts = BTreeSet::new();
-    facts.insert(format!("humans {}", reading.humans.len()));
-    facts.extend(reading.place.map(|place| format!("place {place}")));
-    for fact in &reading.facts {
-        match &fact.kind {
-            FactKind::RobotSays(sign) => facts.insert(format!("robot says {sign}")),
-            FactKind::RobotStart(place) => facts.insert(format!("robot start {place}")),
-            FactKind::RobotGoal(place) => facts.insert(format!("robot goal {place}")),
-            FactKind::Group { members, .. } => {
-                let members: Vec<String> = members.iter().map(|member| member.number().to_string()).collect();
-                facts.insert(format!("group {}", members.join(" ")))
-            }
-            FactKind::Gestures { human, gesture } => facts.insert(format!("{} says {gesture}", human.number())),
-            _ => false,
-        };
-    }
-    for human in &reading.humans {
-        let n = human.id.number();
-        facts.insert(format!("{n} role {}", human.role));
-        facts.extend(human.relation.map(|relation| format!("{n} {}", relation.name())));
-        let mut before: Option<&socrates_model::Rule> = None;
-        for rule in &human.rules {
-            facts.extend(rule.gesture.map(|sign| format!("{n} says {sign}")));
-            let act = format!("{n}: {}", old_act(&rule.act));
-            facts.insert(act.clone());
-            facts.extend(rule.for_s.map(|secs| format!("{act} for {}", number(secs))));
-            for trigger in &rule.when {
-                facts.extend(
-                    old_cue(trigger, human.relation == Some(socrates_model::Relation::Ahead))
-                        .into_iter()
-                        .map(|cue| format!("{act} {cue}")),
-                );
-            }
-            if let Some(secs) = before.filter(|before| before.when == rule.when).and_then(|before| before.for_s) {
-                facts.insert(format!("{act} when after"));
-                facts.insert(format!("{act} at {}", number(secs)));
-            }
-            before = Some(rule);
-        }
-    }
-    facts
-}
-
-fn old_act(act: &socrates_model::Action) -> String {
-    match act {
-        socrates_model::Action::FollowHuman(id) => format!("follow_human {}", id.number()),
-        other => serde_json::to_value(other)
-            .ok()
-            .and_then(|value| value.as_str().map(str::to_owned))
-            .unwrap_or_else(|| "other".to_owned()),
-    }
-}
-
-fn old_cue(trigger: &socrates_model::Trigger, ahead: bool) -> Vec<String> {
-    use socrates_model::Trigger as T;
-    let at = |kind: &str, m: f64| vec![format!("when {kind}"), format!("at {}", number(m))];
-    match trigger {
-        T::RobotVisible(m) => at("visible", *m),
-        T::RobotNear(m) if ahead => [at("near", *m), at("visible", *m)].concat(),
-        T::RobotNear(m) => at("near", *m),
-        T::RobotBlocking(m) => at("blocking", *m),
-        T::RobotMoving => vec!["when moving".to_owned()],
-        T::RobotStopped => vec!["when stopped".to_owned()],
-        T::RobotPassed => vec!["when passed".to_owned()],
-        T::RobotSays(sign) => vec![format!("when robot_says {sign}")],
-        T::HumanSays(id, sign) => vec![format!("when human_says {} {sign}", id.number())],
-        T::GoalReached => vec!["when goal".to_owned()],
-        T::AtEncounter => vec!["when encounter".to_owned()],
-        T::AfterSecs(secs) => at("after", *secs),
-        T::Always | T::StoppedFor(_) | T::Did(..) | T::Done(_) => Vec::new(),
-    }
+    each(|text, _, (request, location), _| {
+        let reading = socrates_offline::understood(request, location, socrates_model::ReadBy::Grammar);
+        let facts: Vec<String> = facts(&reading).into_iter().collect();
+        println!("{:016x}\t{}\t{}", hash(text), !reading.problems.is_empty(), facts.join(";"));
+    });
 }

@@ -105,68 +105,35 @@ fn clauses_of(human: &HumanProposal, before: &Proposal, proposal: &mut Proposal,
 
 /// Whether a human does after an edit what a clause tests: has a rule for it, or goes the same way as before.
 fn still_does(predicate: &Predicate, human: &HumanProposal, before: &Proposal) -> bool {
-    let acts = |test: fn(&Action) -> bool| human.rules.iter().any(|rule| test(&rule.act));
-    match predicate {
-        Predicate::Reacts { act, .. } => human.rules.iter().any(|rule| same_act(&rule.act, act)),
-        Predicate::Step { rule, .. } => human.rules.contains(rule),
-        Predicate::Gestures { gesture, .. } | Predicate::GesturesTo { gesture, .. } => {
-            human.rules.iter().any(|rule| rule.gesture == Some(*gesture))
-        }
-        Predicate::Looks { .. } => acts(|act| matches!(act, Action::LookAtRobot | Action::LookAt(_))),
-        Predicate::Blocks { .. } => acts(|act| *act == Action::Block),
-        Predicate::RunsAway { .. } => acts(|act| *act == Action::RunAway),
-        Predicate::GivesWay { .. } => acts(|act| *act == Action::GiveWay),
-        Predicate::MakesRoom { .. } => acts(|act| *act == Action::MakeRoom),
-        Predicate::StandsStill { .. } => {
-            human.relation.stands() || acts(|act| matches!(act, Action::StandStill | Action::LookAtRobot))
-        }
-        Predicate::ChangesPace { .. } | Predicate::TurnsBack { .. } => false,
-        Predicate::Humans { .. }
-        | Predicate::Meets { .. }
-        | Predicate::MeetsAgain { .. }
-        | Predicate::HeadOn { .. }
-        | Predicate::Crosses { .. }
-        | Predicate::OnSide { .. }
-        | Predicate::Faces { .. }
-        | Predicate::Ahead { .. }
-        | Predicate::Overtakes { .. }
-        | Predicate::RobotPasses { .. }
-        | Predicate::Follows { .. }
-        | Predicate::Abreast { .. }
-        | Predicate::Parallel { .. }
-        | Predicate::Flow { .. }
-        | Predicate::Density { .. }
-        | Predicate::Surrounds { .. }
-        | Predicate::Converges { .. }
-        | Predicate::RobotStep { .. }
-        | Predicate::GoesTo { .. }
-        | Predicate::StaysAside { .. }
-        | Predicate::Walks { .. }
-        | Predicate::GetsTo { .. }
-        | Predicate::Leaves { .. }
-        | Predicate::StaysInside { .. }
-        | Predicate::Enters { .. }
-        | Predicate::DoorOpens { .. }
-        | Predicate::HiddenUntil { .. }
-        | Predicate::Formation { .. }
-        | Predicate::WalksTogether { .. }
-        | Predicate::Queues { .. }
-        | Predicate::Order { .. }
-        | Predicate::Before { .. }
-        | Predicate::EncounterAt { .. }
-        | Predicate::Reaches { .. }
-        | Predicate::StartsAt { .. }
-        | Predicate::RobotWay { .. }
-        | Predicate::OnTime { .. }
-        | Predicate::Plausible
-        | Predicate::RobotArrives
-        | Predicate::RobotKeeps { .. }
-        | Predicate::RobotEntersLast
-        | Predicate::RobotLeavesFirst
-        | Predicate::RobotJoins { .. }
-        | Predicate::RobotLeavesGroup { .. }
-        | Predicate::RobotObeys { .. } => before.human(human.id).is_some_and(|was| was.relation == human.relation),
+    let acts = |test: &dyn Fn(&Action) -> bool| human.rules.iter().any(|rule| test(&rule.act));
+    let same_way = || before.human(human.id).is_some_and(|was| was.relation == human.relation);
+    if let Predicate::Reacts { act, .. } = predicate {
+        acts(&|own| same_act(own, act))
+    } else if let Predicate::Step { rule, .. } = predicate {
+        human.rules.contains(rule)
+    } else if let Predicate::Gestures { gesture, .. } | Predicate::GesturesTo { gesture, .. } = predicate {
+        human.rules.iter().any(|rule| rule.gesture == Some(*gesture))
+    } else if let Predicate::StandsStill { .. } = predicate {
+        human.relation.stands() || acts(&|own| matches!(own, Action::StandStill | Action::LookAtRobot))
+    } else if is_of_rules(predicate) {
+        acts(&|own| predicate.is_deed(own))
+    } else {
+        same_way()
     }
+}
+
+/// Whether a test is of a deed that only a rule brings about. Whoever follows may do so by where they walk.
+const fn is_of_rules(predicate: &Predicate) -> bool {
+    matches!(
+        predicate,
+        Predicate::Looks { .. }
+            | Predicate::Blocks { .. }
+            | Predicate::RunsAway { .. }
+            | Predicate::GivesWay { .. }
+            | Predicate::MakesRoom { .. }
+            | Predicate::ChangesPace { .. }
+            | Predicate::TurnsBack { .. }
+    )
 }
 
 /// Whether two tests are of one kind about one human; of reactions and signs there may be several.

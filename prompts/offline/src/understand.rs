@@ -340,20 +340,7 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
             human.summary.push_str(&format!("{joint}meets the robot twice"));
         }
         facts.extend(twice);
-        for read in &person.rules {
-            // That somebody walks on after all it did is no demand of its own.
-            if !read.stated && read.rule.act == Action::Navigate && read.rule.gesture.is_none() {
-                continue;
-            }
-            match read.rule.gesture {
-                Some(gesture) => {
-                    facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture }));
-                    let to = read.rule.to.map(|to| FactKind::GesturesTo { human: id(i), gesture, to });
-                    facts.extend(to.map(|kind| (read.quote.clone(), kind)));
-                }
-                None => facts.push((read.quote.clone(), FactKind::Reacts { human: id(i), rule: read.rule.clone() })),
-            }
-        }
+        facts.extend(person.rules.iter().flat_map(|read| facts_of_rule(id(i), read)));
     }
     for (quote, kind) in order::facts(story) {
         order::tell(&kind, &mut reading.humans);
@@ -382,6 +369,22 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
         .enumerate()
         .map(|(i, (quote, kind))| Fact { id: format!("f{}", i + 1), quote, kind })
         .collect();
+}
+
+/// What a rule asks for: a sign and to whom it is made, or a reaction.
+fn facts_of_rule(human: HumanId, read: &ReadRule) -> Vec<(String, FactKind)> {
+    // That somebody walks on after all it did is no demand of its own.
+    if !read.stated && read.rule.act == Action::Navigate && read.rule.gesture.is_none() {
+        return Vec::new();
+    }
+    let kinds = match read.rule.gesture {
+        Some(gesture) => {
+            let to = read.rule.to.map(|to| FactKind::GesturesTo { human, gesture, to });
+            [FactKind::Gestures { human, gesture }].into_iter().chain(to).collect()
+        }
+        None => vec![FactKind::Reacts { human, rule: read.rule.clone() }],
+    };
+    kinds.into_iter().map(|kind| (read.quote.clone(), kind)).collect()
 }
 
 /// What of the task is no start and no goal: the way over a place, and the way back.

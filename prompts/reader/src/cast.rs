@@ -26,19 +26,19 @@ pub(crate) struct Cast {
     pub(crate) roles: Vec<String>,
     pub(crate) vague: People,
     pub(crate) plain: People,
-    /// Who was named last.
+    /// People who were named last.
     pub(crate) last: People,
-    /// Who was named before them.
+    /// People who were named before them.
     pub(crate) before: People,
     /// The last several who were named together.
     pub(crate) set: People,
-    /// Who of them was picked since.
+    /// Those of them who were picked since.
     pub(crate) picked: People,
     /// Whether somebody is a woman, or a man, as far as that was said.
     pub(crate) female: BTreeMap<usize, bool>,
     /// People by their names.
     pub(crate) names: BTreeMap<String, usize>,
-    /// Who a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
+    /// People whom a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
     pub(crate) meant: BTreeMap<usize, People>,
     /// Those of whom a colon tells, who have no role yet.
     pub(crate) unnamed: People,
@@ -67,7 +67,7 @@ pub(crate) struct Cast {
     pub(crate) waiting: Option<Range<usize>>,
     /// Noun phrases of which it is not sure whom they mean, by tokens.
     pub(crate) doubts: Vec<Range<usize>>,
-    /// Who was called the others last.
+    /// People who were called the others last.
     pub(crate) others: People,
 }
 
@@ -131,7 +131,7 @@ impl Cast {
         (0..self.roles.len()).collect()
     }
 
-    /// Whom a noun phrase means; new people where nobody was named so.
+    /// People whom a noun phrase means; new people where nobody was named so.
     pub(crate) fn meant(&mut self, noun: &Noun) -> People {
         match &noun.head {
             Head::Robot => People::new(),

@@ -57,6 +57,14 @@ pub(crate) struct Predicate {
     pub(crate) tokens: Range<usize>,
 }
 
+impl Predicate {
+    /// A row that these tokens match, and nothing more.
+    pub(crate) const fn bare(row: usize, tokens: Range<usize>) -> Self {
+        let (object, owner, sign) = (None, None, None);
+        Self { row, object, owner, not: false, passive: false, ongoing: false, sign, tokens }
+    }
+}
+
 /// A place with how it is spoken of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct At {

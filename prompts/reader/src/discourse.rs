@@ -49,29 +49,9 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
 /// something is: mostly they are somebody else who was not made out.
 fn doubted(told: &Told) -> Vec<Statement<People>> {
     let known = |person: usize| {
-        told.statements.iter().any(|statement| match &statement.says {
-            Says::Relate(who, ..) | Says::Group(who) | Says::Pace(who, _) | Says::Noted(who) | Says::Walks(who) => {
-                who.contains(&person)
-            }
-            Says::Do(deed) => {
-                deed.who.contains(&person) || deed.whom.as_ref().is_some_and(|whom| whom.contains(&person))
-            }
-            Says::RobotSays(_, Some(who)) => who.contains(&person),
-            Says::Introduce(_)
-            | Says::RobotSays(..)
-            | Says::Then(..)
-            | Says::RobotFirst(_)
-            | Says::From(..)
-            | Says::Happens(..)
-            | Says::There
-            | Says::GoalThere
-            | Says::RobotVia(_)
-            | Says::RobotStart(_)
-            | Says::RobotGoal(_)
-            | Says::Background(_)
-            | Says::Goes
-            | Says::NotPlayed(_)
-            | Says::NotRead => false,
+        told.statements.iter().map(|statement| &statement.says).any(|says| {
+            let of = !matches!(says, Says::Introduce(_)) && people_of(says).contains(&person);
+            of || with_whom(says).is_some_and(|whom| whom.contains(&person))
         })
     };
     // Somebody of no role among others who have one was mostly not made out.
@@ -116,6 +96,17 @@ fn people_of(says: &Says<People>) -> &[usize] {
         | Says::Goes
         | Says::NotPlayed(_)
         | Says::NotRead => &[],
+    }
+}
+
+/// With whom or to whom something is done.
+fn with_whom(says: &Says<People>) -> Option<&People> {
+    if let Says::Do(deed) = says {
+        deed.whom.as_ref()
+    } else if let Says::RobotSays(_, whom) = says {
+        whom.as_ref()
+    } else {
+        None
     }
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct Found {
     pub(crate) passive: bool,
 }
 
-/// So many words may stand between two parts of a pattern.
+/// Words that may stand between two parts of a pattern.
 const BETWEEN: usize = 2;
 
 /// The longest match of some patterns at a chunk.

@@ -7,7 +7,7 @@ use crate::token::{Bent, Kind, Sort, Token};
 
 /// How many a group is of whom no number is said.
 const FEW: u32 = 3;
-/// So many words may stand between an article and its noun.
+/// Words that may stand between an article and its noun.
 const MODIFIERS: usize = 5;
 
 fn token_role(head: &Head) -> String {

@@ -161,16 +161,7 @@ impl Parser<'_> {
         let sign = self.lexicon.signs.get(found.row).map(|row| row.says);
         self.at = found.end;
         let tokens = start..self.token();
-        clause.acts.push(Predicate {
-            row,
-            object: None,
-            owner: None,
-            not: false,
-            passive: false,
-            ongoing: false,
-            sign,
-            tokens,
-        });
+        clause.acts.push(Predicate { sign, ..Predicate::bare(row, tokens) });
         true
     }
 

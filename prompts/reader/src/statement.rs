@@ -76,7 +76,7 @@ pub enum Says<W> {
 /// What somebody does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deed<W> {
-    /// Who.
+    /// The people who do it.
     pub who: W,
     /// What.
     pub act: Act,

@@ -58,17 +58,7 @@ impl Parser<'_> {
             let row = patterns.beginning(word).find(|pattern| pattern.slots.len() == 1).map(|pattern| pattern.row);
             let relates = |row: &usize| self.lexicon.frames.get(*row).is_some_and(|frame| frame.relate.is_some());
             if let Some(row) = row.filter(relates) {
-                let tokens = noun.tokens.clone();
-                clause.acts.push(Predicate {
-                    row,
-                    object: None,
-                    owner: None,
-                    not: false,
-                    passive: false,
-                    ongoing: false,
-                    sign: None,
-                    tokens,
-                });
+                clause.acts.push(Predicate::bare(row, noun.tokens.clone()));
             }
         }
     }

@@ -99,8 +99,11 @@ pub(crate) fn mended(account: &Account, question: &Question) -> Account {
 /// The question of a proposal that is made again, for an author that reads the request itself: what is stated and what a person wished in
 /// words binds, and what the author read before is no more than its last answer, which is shown with its account.
 pub(crate) fn again(question: &Question) -> Option<Question> {
+    if question.stage != Stage::Proposal || !question.reading.by.is_author() {
+        return None;
+    }
     let account = Account::of(&question.reading, &question.request);
-    if question.stage != Stage::Proposal || !question.reading.by.is_author() || account.0.is_empty() {
+    if account.0.is_empty() {
         return None;
     }
     let mut stated = socrates_offline::stated(&question.request, &question.location);

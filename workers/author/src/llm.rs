@@ -68,8 +68,9 @@ impl Llm {
 impl Author for Llm {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let (style, grammar, change) = self.fitted(question);
-        let prompt =
-            if style.mode == Mode::Naive { question.prompt(&style) } else { passing::shown(question).prompt(&style) };
+        // The baseline of ablations is shown nothing but its own answer.
+        let shown = if style.mode == Mode::Naive { None } else { passing::shown(question) };
+        let prompt = shown.as_ref().unwrap_or(question).prompt(&style);
         let room = room(question, self.max_tokens);
         let mut request = chat_request(question, &prompt, style.image, room)?;
         request.grammar = grammar;

@@ -222,7 +222,7 @@ fn a_look_that_follows_the_robot_behind_a_corner_for_a_moment_goes_on() {
     turned(&mut run, 7.0);
     let report = case.judge(&run);
     assert_ne!(found(&report, "c1").standing, Standing::Holds, "who turns away looks no more");
-    // Who has not seen the robot does not look at it, however it stands.
+    // A person who has not seen the robot does not look at it, however it stands.
     let hidden = recording(&[Walk::robot(0., -1.1, 0., 0.), Walk::human(1, x, y, 0., 0.).facing(-1.57)], 12.0, 0.01);
     assert_ne!(found(&case.judge(&hidden), "c1").standing, Standing::Holds);
 }

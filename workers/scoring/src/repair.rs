@@ -81,10 +81,10 @@ fn has_rule(evidence: &Evidence<'_>, clause: &Clause) -> bool {
     };
     let human = follower.or_else(|| clause.predicate.human());
     let human = human.and_then(|human| evidence.proposal.and_then(|proposal| proposal.human(human)));
-    human.is_some_and(|human| human.rules.iter().any(|rule| does(&clause.predicate, &rule.act)))
+    human.is_some_and(|human| human.rules.iter().any(|rule| clause.predicate.is_deed(&rule.act)))
 }
 
-/// Who of the group of a clause had left for a rule of their own by then: places of people cannot mend that.
+/// The member of the group of a clause who had left for a rule of their own by then: places of people cannot mend that.
 fn left_by_rule(evidence: &Evidence<'_>, clause: &Clause, by_s: f64) -> Option<(HumanId, Action)> {
     let proposal = evidence.proposal?;
     let group = proposal.groups.iter().find(|group| clause.predicate.group() == Some(group.id))?;
@@ -121,19 +121,6 @@ const fn leads_away(act: &Action) -> bool {
         | Action::ChangePace(_)
         | Action::MakeRoom => false,
     }
-}
-
-/// Whether an action is what a clause tests.
-const fn does(predicate: &Predicate, act: &Action) -> bool {
-    matches!(
-        (predicate, act),
-        (Predicate::Blocks { .. }, Action::Block)
-            | (Predicate::Looks { .. }, Action::LookAtRobot | Action::LookAt(_))
-            | (Predicate::RunsAway { .. }, Action::RunAway)
-            | (Predicate::GivesWay { .. }, Action::GiveWay)
-            | (Predicate::MakesRoom { .. }, Action::MakeRoom)
-            | (Predicate::Follows { .. }, Action::FollowRobot | Action::FollowHuman(_))
-    )
 }
 
 /// Code, stage and message of a clause that was missed; `ruled` tells whether its people have a rule for what it tests.

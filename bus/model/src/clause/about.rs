@@ -2,6 +2,7 @@
 
 use super::Predicate;
 use crate::ids::{AgentId, GroupId, HumanId};
+use crate::rule::Action;
 
 impl Predicate {
     /// The human the clause is about, if it is about one.
@@ -149,6 +150,20 @@ impl Predicate {
                 | Self::RobotJoins { .. }
                 | Self::RobotLeavesGroup { .. }
                 | Self::RobotObeys { .. }
+        )
+    }
+
+    /// Whether somebody who does this has what the clause tests; only of tests that are of one kind of action.
+    #[must_use]
+    pub const fn is_deed(&self, act: &Action) -> bool {
+        matches!(
+            (self, act),
+            (Self::Blocks { .. }, Action::Block)
+                | (Self::Looks { .. }, Action::LookAtRobot | Action::LookAt(_))
+                | (Self::RunsAway { .. }, Action::RunAway)
+                | (Self::GivesWay { .. }, Action::GiveWay)
+                | (Self::MakesRoom { .. }, Action::MakeRoom)
+                | (Self::Follows { .. }, Action::FollowRobot | Action::FollowHuman(_))
         )
     }
 

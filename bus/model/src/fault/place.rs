@@ -64,7 +64,7 @@ pub struct Where {
     /// Whose path, tree or part it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub agent: Option<AgentId>,
-    /// Who else it is about.
+    /// The other agents that it is about.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub others: Vec<AgentId>,
     /// Step of a path, from 1.

@@ -33,7 +33,7 @@ pub(super) enum Tone {
     Quiet,
 }
 
-/// Who looks: the terminal, or a test.
+/// The person who looks: the terminal, or a test.
 pub(super) trait Person {
     /// Shows a line.
     fn say(&mut self, tone: Tone, line: &str);
@@ -83,7 +83,7 @@ pub(super) struct Look {
     pub(super) reasons: Vec<Fault>,
     /// Request, location and seed; the rest of it is filled in for each edit.
     pub(super) question: Question,
-    /// Who was asked.
+    /// The author that was asked.
     pub(super) author: AuthorSpec,
     /// Stages that the request pins; nobody is asked for them.
     pub(super) pinned: Vec<Stage>,

@@ -28,7 +28,7 @@ pub(super) const QUESTION_BYTES: usize = 16 << 20;
 pub(super) const ANSWER_BYTES: usize = 2 << 20;
 /// Faults of an answer that are shown.
 const FAULTS: usize = 12;
-/// Who is not let in, and what the page may do: nothing from elsewhere, no script but ours.
+/// What a stranger is told, and what the page may do: nothing from elsewhere, no script but ours.
 const WORDS: loopback::Words = loopback::Words {
     stranger: "only programs of this machine and the page of this console may ask here",
     token: "the token is missing or wrong; open the address that `socrates author console` printed",

@@ -38,7 +38,7 @@ const KINDS: [&str; 10] = [
     "ELEVATOR LOBBY",
     "IN ELEVATOR",
 ];
-/// Who is not let in, and what an answer without a page may do: nothing.
+/// What a stranger is told, and what an answer without a page may do: nothing.
 const WORDS: loopback::Words = loopback::Words {
     stranger: "only the page of this editor and programs of this machine may ask here",
     token: "the token is missing or wrong; open the address that `socrates map edit` printed",

@@ -166,7 +166,7 @@ fn stands_for_queue(signals: &Signals<'_>, given: &[Clause], human: HumanId) -> 
     members.min_by(|a, b| signals.nearest_m(*a).total_cmp(&signals.nearest_m(*b))).is_none_or(|first| first == human)
 }
 
-/// Whether a human who follows somebody has to meet the robot by itself as well. Who follows another human comes as
+/// Whether a human who follows somebody has to meet the robot by itself as well. A human who follows another comes as
 /// near to the robot as that one, and who follows the robot has met it wherever it comes near. Somebody has to be met
 /// in every scenario: where nobody else is, these are.
 fn only_follows(signals: &Signals<'_>, given: &[Clause], human: HumanId) -> bool {
