@@ -50,7 +50,8 @@ fn scripts_for_slurm_and_those_beside_this_test_pass_a_linter_of_shells() {
     let Some(tools) = tools() else { return };
     let folder = tempfile::tempdir().unwrap();
     let lint = |file: &str| said(tools.join("shellcheck"), &["--shell=bash", file], folder.path());
-    let ours = ["shards.sh", "held.sh", "cluster.sh", "slurm.sh", "stand_in.sh"].map(|name| PathBuf::from(script(name)));
+    let ours =
+        ["shards.sh", "held.sh", "cluster.sh", "slurm.sh", "stand_in.sh"].map(|name| PathBuf::from(script(name)));
     let others = ["shards.sbatch", "merge.sbatch", "cluster.sbatch"].map(|name| deployed("slurm").join(name));
     for file in ours.into_iter().chain(others).chain([root().join("deploy/release.sh")]) {
         let file = file.display().to_string();
