@@ -167,6 +167,7 @@ fn able(proposal: &mut Proposal, _given: &Given<'_>) {
                 rule.for_s = Some(REACTS_S);
             }
         }
+        Rule::take_turns(&mut human.rules);
         human.speed_mps = human.speed_mps.map(|speed| speed.clamp(SPEED_MPS.0, SPEED_MPS.1));
         if human.behavior.trim().is_empty() || !impossible(&human.behavior).is_empty() {
             human.behavior = by_rules(human);

@@ -124,6 +124,16 @@ fn abilities(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
             bad(Where::rule(human.id, index + 1), message);
         }
     }
+    for (hiding, hidden) in Rule::hidden(&human.rules) {
+        let [first, later] = [hiding, hidden].map(|index| human.rules.get(index).map(Rule::phrase).unwrap_or_default());
+        let message = format!(
+            "is never played ({later}): rule {} ({first}) holds whenever it does, and earlier rules win; put it first, or \
+             let rule {} end by `for`",
+            hiding + 1,
+            hiding + 1
+        );
+        bad(Where::rule(human.id, hidden + 1), message);
+    }
     faults
 }
 
@@ -261,6 +271,22 @@ mod tests {
             proposal.humans[0].rules[0].act = Action::FollowHuman(HumanId::new(2));
         };
         assert_eq!(codes(&faults(follow)), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_rule_that_an_earlier_one_hides_is_refused_and_one_that_ends_hides_nothing() {
+        let rule = |when: Trigger, act| Rule { when: vec![when], act, ..Rule::default() };
+        let with = |first: Rule, later: Rule| {
+            let found = faults(|proposal| proposal.humans[0].rules = vec![first, later]);
+            found.into_iter().filter(|fault| fault.code == FaultCode::PCap).count()
+        };
+        let looks = rule(Trigger::RobotVisible(5.0), Action::LookAtRobot);
+        let flees = || rule(Trigger::RobotVisible(3.0), Action::RunAway);
+        assert_eq!(with(looks.clone(), flees()), 1);
+        assert_eq!(with(flees(), looks.clone()), 0);
+        assert_eq!(with(Rule { for_s: Some(3.0), ..looks.clone() }, flees()), 0);
+        assert_eq!(with(looks, rule(Trigger::RobotNear(3.0), Action::RunAway)), 0, "near, and out of sight");
+        assert_eq!(with(rule(Trigger::Always, Action::Navigate), flees()), 1);
     }
 
     #[test]

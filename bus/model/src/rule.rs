@@ -226,6 +226,19 @@ impl Trigger {
         }
     }
 
+    /// Whether the other one holds whenever this one does: `robot_near:2` implies `robot_near:3`.
+    #[must_use]
+    pub fn implies(&self, other: &Self) -> bool {
+        match (self, other) {
+            (_, Self::Always) | (Self::StoppedFor(_), Self::RobotStopped) => true,
+            (Self::RobotNear(own) | Self::RobotVisible(own) | Self::RobotBlocking(own), Self::RobotNear(m))
+            | (Self::RobotVisible(own) | Self::RobotBlocking(own), Self::RobotVisible(m))
+            | (Self::RobotBlocking(own), Self::RobotBlocking(m)) => own <= m,
+            (Self::AfterSecs(own), Self::AfterSecs(s)) | (Self::StoppedFor(own), Self::StoppedFor(s)) => own >= s,
+            (own, other) => own == other,
+        }
+    }
+
     /// What holds, as a clause: `the robot is within 2 m`.
     #[must_use]
     pub fn clause(&self) -> String {
@@ -316,6 +329,39 @@ impl Trigger {
 }
 
 impl Rule {
+    /// Whether a later rule of the same human is never played because of this one: whenever that one's triggers hold these do too, and
+    /// earlier rules win. A rule that ends by itself (after a time, or as a step) leaves room for what follows.
+    #[must_use]
+    pub fn hides(&self, later: &Self) -> bool {
+        let implied = |own: &Trigger| later.when.iter().any(|other| other.implies(own));
+        self.for_s.is_none() && self.step.is_none() && self.until.is_empty() && self.when.iter().all(implied)
+    }
+
+    /// The rules that are never played, each after the first that hides it, by their places.
+    #[must_use]
+    pub fn hidden(rules: &[Self]) -> Vec<(usize, usize)> {
+        let by = |(at, later): (usize, &Self)| Some((rules.iter().take(at).position(|rule| rule.hides(later))?, at));
+        rules.iter().enumerate().filter_map(by).collect()
+    }
+
+    /// Lets every rule have its turn: one that a wider one hides goes before it; the first of two with the same triggers ends after
+    /// [`Self::TURN_S`].
+    pub fn take_turns(rules: &mut [Self]) {
+        // Each round mends a pair for good: a narrower rule stays before a wider one, and what ends hides nothing.
+        for _ in 0..rules.len() * rules.len() {
+            let Some((hiding, later)) = Self::hidden(rules).first().copied() else { return };
+            let same = rules.get(later).zip(rules.get(hiding)).is_some_and(|(later, first)| later.hides(first));
+            if same && let Some(first) = rules.get_mut(hiding) {
+                first.for_s = Some(Self::TURN_S);
+            } else if let Some(between) = rules.get_mut(hiding..=later) {
+                between.rotate_right(1);
+            }
+        }
+    }
+
+    /// Time after which a rule ends that would hide another one with the same triggers, s.
+    pub const TURN_S: f64 = 3.0;
+
     /// The rule in words: `when the robot is within 2 m they give way to the robot and say PROCEED`.
     #[must_use]
     pub fn phrase(&self) -> String {

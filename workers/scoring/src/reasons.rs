@@ -72,6 +72,17 @@ fn a_hesitation_is_not_proved_by_the_time_before_they_set_off() {
 }
 
 #[test]
+fn what_their_tree_played_instead_of_the_deed_is_told() {
+    let case =
+        comes(rule(Trigger::RobotNear(3.0), Action::RunAway, None), Predicate::RunsAway { human: H1, by_m: 1.5 });
+    let report = case.judge(&run(&[robot(), stops_for(3.0)]));
+    let seen = clause(&report, "c1");
+    assert_eq!(seen.standing, Standing::Fails, "{}", seen.evidence);
+    let told = "the reason for it (when the robot is within 3 m) came at 11.8 s; their tree plays `StandStill` then";
+    assert!(seen.evidence.contains(told), "{}", seen.evidence);
+}
+
+#[test]
 fn whose_place_it_is_to_stand_there_stands_from_the_beginning() {
     let mut case = hesitates();
     case.plan.humans[0].relation = socrates_model::Relation::Static;

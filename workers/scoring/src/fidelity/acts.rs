@@ -232,7 +232,10 @@ pub(super) fn runs_away(signals: &Signals<'_>, human: HumanId, by_m: f64) -> Fin
             let text = format!("{human} never came near: closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
             Finding::never(-by_m, vec![nearest.t], text)
         }
-        None => Finding::fails(-by_m, vec![nearest.t], format!("{human} never ran away from the robot")),
+        None => {
+            let text = format!("{human} never ran away from the robot");
+            since.undone(signals, human, Finding::fails(-by_m, vec![nearest.t], text))
+        }
     }
 }
 

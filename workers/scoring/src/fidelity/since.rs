@@ -56,6 +56,16 @@ impl Since {
         }
         found
     }
+
+    /// The finding that nothing was done: with when there was reason for it, and what the human's tree played then.
+    pub(super) fn undone(&self, signals: &Signals<'_>, human: HumanId, mut found: Finding) -> Finding {
+        let Some(phrase) = &self.phrase else { return found };
+        let (from, to) = (self.t - EARLY_SECS, self.t + EARLY_SECS);
+        let played = signals.leaves_of(human).iter().rfind(|span| span.from_s <= to && span.to_s > from);
+        let played = played.map_or_else(String::new, |span| format!("; their tree plays `{}` then", span.name));
+        found.evidence.push_str(&format!(": the reason for it ({phrase}) came at {:.1} s{played}", self.t.max(0.0)));
+        found
+    }
 }
 
 /// From when on a deed of a human counts: from the first reason of a rule that has it. A human without such a rule, one
