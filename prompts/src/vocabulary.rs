@@ -35,7 +35,9 @@ pub(crate) fn proposal_tables() -> String {
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
          `for`: so many seconds at most, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
-         `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. Distances in m, times in s.\n\
+         `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. `within_m`: at most so far; `for_s`: at least so \
+         long; `gap_s`: both there within so many seconds; `by_m`: so much farther; `spread_m`: of two members at most. One test is enough \
+         for a fact of several.\n\
          Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
@@ -306,15 +308,12 @@ fn predicates() -> Vec<Test> {
     let human = HumanId::new(1);
     let group = GroupId(1);
     vec![
-        setup(&Predicate::Humans { count: 2 }, "so many are there all the time"),
+        setup(&Predicate::Humans { count: 2 }, "so many are there all the time").by_name(),
         setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter").by_name(),
         setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for").rarely(),
         setup(&Predicate::HeadOn { human }, "comes straight at the robot"),
-        setup(
-            &Predicate::Crosses { human, gap_s: 3.0 },
-            "crosses its way, both at the crossing within gap_s of each other",
-        ),
-        setup(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot"),
+        setup(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses the robot's way"),
+        setup(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot").by_name(),
         setup(&Predicate::Overtakes { human }, "overtakes the robot"),
         setup(&Predicate::RobotPasses { human }, "the robot passes it"),
         setup(
@@ -325,7 +324,8 @@ fn predicates() -> Vec<Test> {
                 for_s: 5.0,
             },
             "goes behind the leader",
-        ),
+        )
+        .by_name(),
         setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot").by_name(),
         setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it").rarely(),
         setup(
@@ -342,14 +342,14 @@ fn predicates() -> Vec<Test> {
             &Predicate::Looks { human, for_s: 2.0 },
             "stands and looks at the robot; `for_s` about half of its rule's `for`",
         ),
-        setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still"),
+        setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still").by_name(),
         setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot").by_name(),
         setup(&Predicate::GivesWay { human }, "leaves the robot's way free").by_name(),
         setup(
             &Predicate::Reacts { human, when: vec![Trigger::RobotNear(3.0)], act: Action::StandStill, within_s: 2.0 },
             "the action follows the triggers",
         ),
-        setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it"),
+        setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it").by_name(),
         setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door").by_name(),
         setup(&Predicate::StaysAside { human }, "stands beside the way, never in it").by_name(),
         setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door"),
@@ -359,7 +359,7 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near").rarely(),
         setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together").by_name(),
         setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together").by_name(),
-        setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line"),
+        setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line").by_name(),
         setup(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
             "one clause (c1, c2, …) before another",
@@ -375,7 +375,7 @@ fn predicates() -> Vec<Test> {
         )
         .by_name(),
         setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time").rarely(),
-        setup(&Predicate::Plausible, "everybody moves as people do"),
+        setup(&Predicate::Plausible, "everybody moves as people do").by_name(),
         outcome(&Predicate::RobotArrives, "the robot gets to its goal").by_name(),
         outcome(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance"),
         outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out"),

@@ -119,6 +119,9 @@ impl Desk {
     }
 
     fn try_wish(&mut self, wish: &Wish, crowd: &mut Crowd) {
+        if crowd.is_guess(wish) {
+            return self.refuse(&wish.quote, "does not say which of those who are there is meant");
+        }
         match wish.kind {
             Kind::Longer | Kind::Shorter | Kind::Reverse | Kind::Avoid | Kind::Start | Kind::End | Kind::Move => {
                 edit_paths::grant(self, wish, crowd);

@@ -9,13 +9,13 @@ use socrates_model::{
     Proposal, Relation, Rule, Trigger,
 };
 
-use crate::cast::{Cast, Person, ReadRule};
+use crate::cast::{Cast, Person, ReadRule, plain};
 use crate::deed::manner;
 use crate::edit::Desk;
 use crate::edit_paths;
 use crate::edit_wish::Wish;
-use crate::lexicon::Act;
-use crate::mention::{Who, mentions};
+use crate::lexicon::{Act, lexicon};
+use crate::mention::{Mention, Who, mentions};
 use crate::story::{Story, read_on};
 use crate::{place, prose};
 
@@ -38,6 +38,16 @@ pub(crate) enum Whom {
 impl Crowd {
     pub(crate) fn of(proposal: &Proposal) -> Self {
         Self { cast: Cast::known(proposal.humans.iter().map(person).collect()) }
+    }
+
+    /// Whether words speak of one of several as a man or a woman, and nobody is called so: then it is anybody's guess who is meant.
+    pub(crate) fn is_guess(&self, wish: &Wish) -> bool {
+        let called = |role: &str| self.cast.people.iter().any(|person| person.role == role);
+        let one = |mention: &Mention| {
+            let role = mention.role.as_deref().filter(|role| plain(role));
+            matches!(mention.who, Who::Definite { plural: false, .. }) && role.is_some_and(|role| !called(role))
+        };
+        self.cast.people.len() > 1 && wish.clauses.iter().any(|clause| mentions(&clause.words).iter().any(one))
     }
 
     /// Whom the words mean; people who are not there are nobody.
@@ -76,8 +86,13 @@ impl Crowd {
     }
 }
 
+/// A human under the noun by which an edit can call them: of a role in several words (`elderly man`) the last that is one.
 fn person(human: &HumanProposal) -> Person {
-    let role = if human.role == "person" { String::new() } else { human.role.clone() };
+    let known = |word: &&str| plain(word) || lexicon().roles.contains_key(*word);
+    let words = || human.role.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    let whole = lexicon().roles.contains_key(&human.role);
+    let noun = if whole { None } else { words().filter(known).last() };
+    let role = if human.role == "person" { "" } else { noun.unwrap_or(&human.role) }.to_owned();
     Person { role, group: human.group, bound: true, ..Person::default() }
 }
 

@@ -146,3 +146,12 @@ fn amounts_beyond_what_is_played_are_told() {
         reading.problems
     );
 }
+
+#[test]
+fn of_two_rules_that_could_both_be_played_the_nearer_one_is_played_first() {
+    let rough = "When a person sees the robot from 5 m, he slows down, and at 1.5 m he stops.";
+    let proposal = proposed(&request("Drive along the corridor", Some(rough)), &map("office"));
+    let rules = &proposal.humans[0].rules;
+    let acts: Vec<&Action> = rules.iter().map(|rule| &rule.act).collect();
+    assert_eq!(acts, [&Action::StandStill, &Action::ChangePace(0.6)], "{rules:?}");
+}

@@ -200,10 +200,11 @@ fn proposed(
                 .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
         }),
     };
-    let rules = match request.run.breadth {
+    let mut rules = match request.run.breadth {
         Breadth::Usual => human.rules.clone(),
         Breadth::Wide => noticing::rules(&human.rules, &extra.open, relation, (place, human.group.is_some(), draw)),
     };
+    Rule::take_turns(&mut rules);
     let mut behavior = prose::behavior(&human.role, relation, place, start, &rules, human.group.is_some());
     let goal = extra.goal.filter(|class| place::has(location, *class));
     if relation == Relation::Static && goal.is_some() {

@@ -423,3 +423,27 @@ fn somebody_who_is_named_twice_is_removed_once() {
         assert!(!after.draft.proposal.humans.is_empty(), "{words}");
     }
 }
+
+#[test]
+fn a_man_or_a_woman_is_whoever_is_called_so_and_else_nobody_is_changed() {
+    let two = "A nurse comes towards the robot in the corridor. A visitor crosses its way.";
+    for (roles, words, changed) in [
+        (["man", "woman"], "the woman should wait 3 s", Some(1)),
+        (["elderly man", "young woman"], "the woman stops 2 m before the robot", Some(1)),
+        (["employee (man)", "employee (woman)"], "the man stops 2 m before the robot", Some(0)),
+        (["male nurse", "female visitor"], "the visitor runs away", Some(1)),
+        (["nurse", "visitor"], "the woman runs away", None),
+        (["man", "woman"], "the lady runs away when the robot is within 2 m", None),
+        (["man", "woman"], "she stops 2 m before the robot", None),
+    ] {
+        let (ask, mut before) = draft("office", two);
+        for (human, role) in before.proposal.humans.iter_mut().zip(roles) {
+            human.role = role.to_owned();
+        }
+        let after = edit(&ask, &before, words);
+        let humans = before.proposal.humans.iter().zip(&after.draft.proposal.humans);
+        let others: Vec<usize> = humans.enumerate().filter(|(_, (old, new))| old != new).map(|(at, _)| at).collect();
+        assert_eq!(others, changed.into_iter().collect::<Vec<_>>(), "{roles:?}: {words}");
+        assert_eq!(after.not_done.is_empty(), changed.is_some(), "{words}: {:?}", after.not_done);
+    }
+}
