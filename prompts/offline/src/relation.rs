@@ -41,14 +41,6 @@ pub(crate) fn relation(act: Act) -> Option<Relation> {
     })
 }
 
-/// Whether the words say that it happens right in front of the robot.
-fn before_robot(quote: &str) -> bool {
-    let lower = quote.to_lowercase();
-    ["front of the robot", "front of it", "before the robot", "before it", "the robot's path", "the robot's way"]
-        .iter()
-        .any(|words| lower.contains(words))
-}
-
 /// Sets the relation. Two that exclude each other are a contradiction, quoted; of one after the other, the first is played,
 /// and that the other is not is said.
 pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
@@ -68,10 +60,6 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
             && matches!(new, Relation::Frontal | Relation::Crossing)
             && person.group.is_some()
             && person.doings.iter().all(|doing| !matches!(doing.as_str(), "stands" | "stops"));
-    // Who comes out right before the robot meets it where it crosses.
-    let at_door = (old, new) == (Relation::Leaving, Relation::Crossing)
-        && person.start != Some(PlaceClass::Elevator)
-        && before_robot(quote);
     // `two pickers meet it at the junction: one crosses, the other …`: how they meet is told then.
     let met = old == Relation::Frontal
         && first.contains("meet")
@@ -86,7 +74,7 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
     let ends = matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
         && !matches!(old, Relation::Leaving | Relation::Staying);
     // `come out of a room and cross its way`: both are played, and judged.
-    let both = pair(Relation::Leaving, Relation::Crossing) && !at_door && person.start != Some(PlaceClass::Elevator);
+    let both = pair(Relation::Leaving, Relation::Crossing) && person.start != Some(PlaceClass::Elevator);
     if both {
         let words = if new == Relation::Crossing { quote } else { &first };
         person.crosses = Some(words.to_owned());
@@ -95,9 +83,9 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
         }
     } else if excludes && !afterwards(quote) {
         cast.problems.push(contradiction(who, &first, quote));
-    } else if closer || at_door || ends {
+    } else if closer || ends {
         person.relation = Some((new, quote.to_owned()));
-        if !closer && !at_door {
+        if !closer {
             lost(cast, who, (old, &first), new);
         }
     } else {
