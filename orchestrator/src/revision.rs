@@ -25,8 +25,12 @@ impl Turn<'_> {
         // A report without a verdict proves nothing.
         let verdict = result.verdict.unwrap_or(Verdict::Invalid);
         let revision = scenario.revision;
+        let partial = verdict == Verdict::Invalid && result.verdict.is_some() && result.repair.is_none();
         if let Some(scenario) = self.scenario_mut(id) {
             scenario.verdicts.insert(revision, verdict);
+            if partial {
+                scenario.partial.insert(revision);
+            }
         }
         let wish = result.repair.as_ref().filter(|_| verdict != Verdict::Realised);
         if let Some(repair) = wish
@@ -221,15 +225,17 @@ fn are_again(before: &[Fault], now: &[Fault]) -> bool {
     !now.is_empty() && now.iter().all(|fault| before.iter().any(|other| other.is_like(fault)))
 }
 
-/// The revision that counts: the best, the newer of equals; one that came in time before one that came late.
+/// The revision that counts: the best, the newer of equals; one that came in time before one that came late, and one in which all that was
+/// played was seen before one in which it was not.
 fn best(scenario: &Scenario) -> Option<(u32, Verdict)> {
-    let rank = |verdict: Verdict| match verdict {
-        Verdict::Realised => 5,
-        Verdict::RealisedLate => 4,
-        Verdict::RobotPrevented => 3,
+    let rank = |revision: u32, verdict: Verdict| match verdict {
+        Verdict::Realised => 6,
+        Verdict::RealisedLate => 5,
+        Verdict::RobotPrevented => 4,
+        Verdict::Invalid if scenario.partial.contains(&revision) => 3,
         Verdict::NotTriggered => 2,
         Verdict::Contradicted => 1,
         Verdict::Invalid => 0,
     };
-    scenario.verdicts.iter().map(|(revision, verdict)| (*revision, *verdict)).max_by_key(|(r, v)| (rank(*v), *r))
+    scenario.verdicts.iter().map(|(revision, verdict)| (*revision, *verdict)).max_by_key(|(r, v)| (rank(*r, *v), *r))
 }

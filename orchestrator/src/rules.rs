@@ -343,6 +343,20 @@ fn the_best_revision_counts_when_the_budget_ends() {
 }
 
 #[test]
+fn a_revision_with_nothing_to_mend_counts_although_a_part_of_the_request_is_not_played() {
+    let mut world = begun();
+    let scoring = world.reach_scoring();
+    let faults = vec![fault(FaultCode::DNoMeet, "they never met")];
+    world.score(&scoring, Verdict::NotTriggered, Some(Repair { stage: Stage::Paths, faults }));
+    world.pass(Stage::Paths);
+    world.pass(Stage::Simulation);
+    let scoring = world.grant("w", Stage::Scoring);
+    world.score(&scoring, Verdict::Invalid, None);
+    assert_eq!(world.scenario("a").settled, Some(1));
+    assert_eq!(world.scenario("a").end, Some(ScenarioEnd::Judged(Verdict::Invalid)));
+}
+
+#[test]
 fn what_came_late_is_tried_again_and_stands_where_nothing_better_comes() {
     for (then, settled) in [(Verdict::Realised, 1), (Verdict::Contradicted, 0)] {
         let mut world = begun();

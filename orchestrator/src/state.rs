@@ -248,6 +248,9 @@ pub struct Scenario {
     pub reviews: u32,
     /// Verdict of the lead run, by revision.
     pub verdicts: BTreeMap<u32, Verdict>,
+    /// Revisions that are invalid with nothing to mend: what was played was seen, and a part of the request has no place in any revision.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    pub partial: BTreeSet<u32>,
     /// The revision that counts; once it is set the other runs are made and nothing is repaired.
     pub settled: Option<u32>,
     /// Whether a client gave it up.

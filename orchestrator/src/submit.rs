@@ -1,6 +1,6 @@
 //! Hello and Submit: workers and scenarios come in; jobs are made and become ready.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::fault::Fault;
 use socrates_model::job::{Item, JobKey, JobSpec, Look, Stage};
@@ -374,6 +374,7 @@ impl Scenario {
             reproposals: 0,
             reviews: 0,
             verdicts: BTreeMap::new(),
+            partial: BTreeSet::new(),
             settled: None,
             canceled: false,
             end: None,
