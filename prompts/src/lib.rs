@@ -24,6 +24,7 @@ pub mod style;
 
 pub mod account;
 pub mod answer;
+pub mod building;
 pub mod json;
 pub mod schema;
 

@@ -48,18 +48,44 @@ pub fn sentences(request: &Request) -> Vec<Sentence> {
     found
 }
 
+/// A line of fewer characters than this was not wrapped: a heading, an item of a list.
+const WRAPPED: usize = 40;
+
+/// The text with blanks for line breaks that only wrap it, byte for byte as long: a line that goes on in lower case, or a long one that ends
+/// in no punctuation. Empty lines and lists stay apart.
+fn unwrapped(text: &str) -> String {
+    let mut flowing = String::with_capacity(text.len());
+    let mut lines = text.split_inclusive('\n').peekable();
+    while let Some(line) = lines.next() {
+        let words = line.trim_end();
+        let next = lines.peek().and_then(|next| next.trim_start_matches([' ', '\t']).chars().next());
+        let goes_on = words.chars().last().is_some_and(|last| last.is_alphanumeric() || ",;)\"”".contains(last));
+        let long = words.chars().count() >= WRAPPED && goes_on;
+        let wraps = !words.is_empty() && next.is_some_and(|next| next.is_lowercase() || long && next.is_alphanumeric());
+        flowing.push_str(words);
+        let rest = line.get(words.len()..).unwrap_or_default();
+        if wraps {
+            flowing.extend(std::iter::repeat_n(' ', rest.len()));
+        } else {
+            flowing.push_str(rest);
+        }
+    }
+    flowing
+}
+
 /// The bytes of each sentence, without the blanks around.
 fn bounds(text: &str) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     let mut open = None;
-    for (from, piece) in text.split_sentence_bound_indices() {
+    let flowing = unwrapped(text);
+    for (from, piece) in flowing.split_sentence_bound_indices() {
         if piece.trim().is_empty() {
             continue;
         }
         let from = from + piece.len() - piece.trim_start().len();
         let to = from + piece.trim().len();
         let start = open.take().unwrap_or(from);
-        let words = text.get(start..to).unwrap_or_default().unicode_words().take(LEAST_WORDS).count();
+        let words = flowing.get(start..to).unwrap_or_default().unicode_words().take(LEAST_WORDS).count();
         if words < LEAST_WORDS { open = Some(start) } else { found.push(start..to) }
     }
     // What is left belongs to what stands before it.
@@ -85,6 +111,18 @@ mod tests {
 
     fn shown(rough: &str) -> Vec<String> {
         of(rough).into_iter().filter(|one| one.at == TextKey::RoughScenario).map(|one| one.quote).collect()
+    }
+
+    #[test]
+    fn a_wrapped_line_goes_on_and_a_list_does_not() {
+        let wrapped = "A person comes towards the robot and stops to look at it\nwhen it is within 3 m. When the robot\nstops they go\non.";
+        assert_eq!(shown(wrapped).len(), 2, "{:?}", shown(wrapped));
+        let long = "Zwei Kollegen gehen plaudernd nebeneinander hinter dem\nRoboter her.";
+        assert_eq!(shown(long), [long]);
+        let list = "- a nurse crosses the corridor\n- a visitor follows the robot";
+        assert_eq!(shown(list).len(), 2, "{:?}", shown(list));
+        let apart = "Two people stand in the way of it and talk\n\nOne of them waves.";
+        assert_eq!(shown(apart).len(), 2, "{:?}", shown(apart));
     }
 
     #[test]

@@ -132,15 +132,19 @@ fn script(line: &str) -> Option<Value> {
     Some(json!({"when": term(when.trim()), "act": term(act.trim())}))
 }
 
+/// Members of tests that are true where they stand alone: `before first=human_1 then=robot at_door`.
+const FLAGS: [&str; 1] = ["at_door"];
+
 fn test(line: &str) -> Option<Value> {
     let mut words = line.split_whitespace();
     let name = words.next()?;
     let mut members = Map::new();
     for word in words {
-        let (key, value) = word.split_once('=')?;
-        let value = match key {
-            LISTS => terms(value),
-            ACTIONS => term(value),
+        let (key, value) = word.split_once('=').or_else(|| FLAGS.contains(&word).then_some((word, "true")))?;
+        let value = match (key, value) {
+            (LISTS, _) => terms(value),
+            (ACTIONS, _) => term(value),
+            (_, "true" | "false") => json!(value == "true"),
             _ => scalar(value),
         };
         members.insert(key.to_owned(), value);
@@ -326,6 +330,10 @@ mod tests {
         );
         assert_eq!(test("flow count=4 angle_deg=0..30"), Some(json!({"flow": {"count": 4, "angle_deg": [0, 30]}})));
         assert_eq!(test("plausible"), Some(json!("plausible")));
+        let before = json!({"before": {"first": "human_1", "then": "robot", "at_door": true}});
+        for line in ["before first=human_1 then=robot at_door", "before at_door=true first=human_1 then=robot"] {
+            assert_eq!(test(line), Some(before.clone()));
+        }
         assert_eq!((rule("robot_near:3"), rule("always -> block loudly"), test("meets human_1")), (None, None, None));
     }
 

@@ -30,7 +30,7 @@ pub(crate) fn proposal_tables() -> String {
         let (rare, usual): (Vec<Test>, Vec<Test>) = rows.into_iter().partition(|test| test.shown == Shown::Rarely);
         let each: String = usual.iter().map(told).collect();
         let rare: Vec<String> = rare.iter().map(|test| signature(&test.form)).collect();
-        if rare.is_empty() { each } else { format!("{each}Rarely, where asked for: {}\n", rare.join(", ")) }
+        if rare.is_empty() { each } else { format!("{each}Rarely: {}\n", rare.join(", ")) }
     };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
@@ -60,7 +60,10 @@ pub(crate) fn ways_of(proposal: &Proposal) -> String {
 
 const WAYS: [(Relation, &str); 9] = [
     (Relation::Frontal, "the robot's edges at the encounter in the other direction."),
-    (Relation::Crossing, "comes to the encounter, or leaves it, by an edge that the robot does not use."),
+    (
+        Relation::Crossing,
+        "comes to the encounter on one side of the robot's way and leaves it on the other; touching it is not enough.",
+    ),
     (Relation::Behind, "the robot's nodes in the same direction, from its start or before it."),
     (Relation::Ahead, "the same direction, starting further on than the robot."),
     (Relation::Abreast, "the same nodes as the robot."),
@@ -69,7 +72,10 @@ const WAYS: [(Relation, &str); 9] = [
         Relation::Leaving,
         "starts inside the room or elevator, comes out of its door, meets the robot in front of it, goes on.",
     ),
-    (Relation::Aside, "one node off the robot's path; no encounter."),
+    (
+        Relation::Aside,
+        "one node off the robot's path, or on it where there is floor beside it; no encounter of their own.",
+    ),
     (Relation::Staying, "one node inside the room or elevator; no encounter, or the robot's last node."),
 ];
 
@@ -365,7 +371,7 @@ fn predicates() -> Vec<Test> {
             "one clause (c1, c2, …) before another",
         ),
         setup(
-            &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: false },
+            &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: true },
             "is at its encounter first, or with at_door through the door",
         )
         .rarely(),

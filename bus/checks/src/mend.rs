@@ -323,12 +323,22 @@ fn sign(proposal: &mut Proposal, id: HumanId, gesture: Gesture, to: Option<Agent
     }
 }
 
+/// What shows that somebody is there, where nothing else is known of them: those beside the way are not met.
+fn is_there(proposal: &Proposal, human: HumanId) -> Predicate {
+    if proposal.human(human).is_some_and(|one| one.relation == Relation::Aside) {
+        Predicate::StaysAside { human }
+    } else {
+        Predicate::Meets { human, within_m: MEETS_M }
+    }
+}
+
 /// P-VERIFY: clauses that can be judged, one for each human, and one for each fact that has to be seen.
 fn verified(proposal: &mut Proposal, given: &Given<'_>) {
     judgeable(proposal);
     let alone: Vec<HumanId> = verify::unseen(proposal).collect();
     for human in alone {
-        add(proposal, Predicate::Meets { human, within_m: MEETS_M }, "");
+        let there = is_there(proposal, human);
+        add(proposal, there, "");
     }
     for fact in &given.reading.facts {
         if !verify::is_unserved(fact, proposal) {
@@ -365,7 +375,7 @@ fn judgeable(proposal: &mut Proposal) {
         }
         if !limits::faults(&clause.predicate, &whole).is_empty() {
             clause.predicate = match clause.predicate.human() {
-                Some(human) => Predicate::Meets { human, within_m: MEETS_M },
+                Some(human) => is_there(&whole, human),
                 None => Predicate::Humans { count: people },
             };
             clause.text.clear();
@@ -436,7 +446,7 @@ fn serve(proposal: &mut Proposal, fact: &Fact) {
         None => {
             let human = owner.or_else(|| whole.humans.first().map(|human| human.id));
             if let Some(human) = human {
-                add(proposal, Predicate::Meets { human, within_m: MEETS_M }, &fact.id);
+                add(proposal, is_there(&whole, human), &fact.id);
             }
         }
     }

@@ -132,21 +132,21 @@ pub struct BuildingBrief {
 
 /// Something of a brief that a building does not have.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
-#[error("{what}: asked {asked}, got {got}")]
+#[error("{what}: asked {asked}; {answer}")]
 pub struct Unmet {
     /// What it is, by its key in the brief.
     pub what: String,
     /// What was asked.
     pub asked: String,
-    /// What there is, or why there is none.
-    pub got: String,
+    /// What there is, why there is none, or what is allowed: `got 2`, `allowed: 1 to 40`.
+    pub answer: String,
 }
 
 impl Unmet {
     /// Something that is not met.
     #[must_use]
-    pub fn new(what: impl Into<String>, asked: impl Into<String>, got: impl Into<String>) -> Self {
-        Self { what: what.into(), asked: asked.into(), got: got.into() }
+    pub fn new(what: impl Into<String>, asked: impl Into<String>, answer: impl Into<String>) -> Self {
+        Self { what: what.into(), asked: asked.into(), answer: answer.into() }
     }
 }
 
@@ -160,7 +160,7 @@ impl BuildingBrief {
         let mut out = Vec::new();
         let mut range = |what: String, value: Option<f64>, least: f64, most: f64| {
             if let Some(value) = value.filter(|value| !(least..=most).contains(value)) {
-                out.push(Unmet::new(what, format!("{value} m"), format!("{least} to {most} m can be built")));
+                out.push(Unmet::new(what, format!("{value} m"), format!("allowed: {least} to {most} m")));
             }
         };
         range("corridor_m".to_owned(), self.corridor_m, 1.2, 6.0);
@@ -169,14 +169,18 @@ impl BuildingBrief {
             range(format!("rooms `{}`: door_m", room.kind), room.door_m, 0.8, 2.4);
         }
         if self.elevators > 4 {
-            out.push(Unmet::new("elevators", self.elevators.to_string(), "at most 4 stand at one lobby"));
+            out.push(Unmet::new(
+                "elevators",
+                self.elevators.to_string(),
+                "allowed: at most 4, which stand at one lobby",
+            ));
         }
         let all: u32 = self.rooms.iter().map(|room| room.count).fold(0, u32::saturating_add);
         if all > MOST_ROOMS {
-            out.push(Unmet::new("rooms", all.to_string(), format!("at most {MOST_ROOMS} rooms in a building")));
+            out.push(Unmet::new("rooms", all.to_string(), format!("allowed: at most {MOST_ROOMS} in a building")));
         }
         if self.rooms.is_empty() && self.elevators == 0 {
-            out.push(Unmet::new("rooms", "none", "a building has a room or an elevator"));
+            out.push(Unmet::new("rooms", "none", "needed: a room or an elevator"));
         }
         for (place, room) in self.rooms.iter().enumerate() {
             let what = |key: &str| format!("rooms `{}`: {key}", room.kind);
@@ -185,14 +189,14 @@ impl BuildingBrief {
                 out.push(Unmet::new(
                     what("type"),
                     format!("`{}`", room.kind),
-                    "1 to 40 letters, digits, blanks, - or /",
+                    "allowed: 1 to 40 letters, digits, blanks, - or /",
                 ));
             }
             if self.rooms.iter().take(place).any(|other| same(&other.kind, &room.kind)) {
-                out.push(Unmet::new(what("type"), "a second row", "each type has one row with a `count`"));
+                out.push(Unmet::new(what("type"), "a second row", "allowed: one row of a type, with a `count`"));
             }
             if !(1..=40).contains(&room.count) {
-                out.push(Unmet::new(what("count"), room.count.to_string(), "1 to 40 of a type"));
+                out.push(Unmet::new(what("count"), room.count.to_string(), "allowed: 1 to 40 of a type"));
             }
             if let Some([least, most]) =
                 room.area_m2.filter(|[least, most]| !(*least > 0.0 && most >= least && *most <= 1000.0))
@@ -200,7 +204,7 @@ impl BuildingBrief {
                 out.push(Unmet::new(
                     what("area_m2"),
                     format!("{least} to {most} m²"),
-                    "two sizes above 0, the larger one last, at most 1000 m²",
+                    "allowed: two sizes above 0 and at most 1000 m², the larger one last",
                 ));
             }
             if let Some(beside) = &room.beside
@@ -209,7 +213,7 @@ impl BuildingBrief {
                 out.push(Unmet::new(
                     what("beside"),
                     format!("`{beside}`"),
-                    "it names another room of the brief by its type",
+                    "needed: the type of another room of the brief",
                 ));
             }
         }
