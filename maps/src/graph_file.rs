@@ -46,12 +46,13 @@ pub(crate) fn read(bytes: &[u8], grid: Option<&Grid>, faults: &mut Vec<Fault>) -
     let nodes = reading.nodes(reading.elements(top, "nodes"), grid);
     let edges = reading.elements(top, edges_key);
     let edges = reading.edges(edges_key, edges, &nodes);
-    if nodes.is_empty() {
-        reading.fault(
-            FaultCode::MId,
-            Where::file(GRAPH),
-            "has no node; at least two and an edge between them are needed",
+    if nodes.len() < 2 || edges.is_empty() {
+        let message = format!(
+            "has {} nodes and {} edges; at least two and an edge between them are needed",
+            nodes.len(),
+            edges.len()
         );
+        reading.fault(FaultCode::MId, Where::file(GRAPH), message);
     }
     Some(SceneGraph::new(nodes, edges))
 }

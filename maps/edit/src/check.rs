@@ -60,8 +60,8 @@ pub struct Remark {
 /// sketch as the program reads it: its edges led round walls.
 pub fn check(sketch: &Sketch, location: &mut Location) -> Vec<Remark> {
     sketch.put_into(location);
-    if sketch.nodes.is_empty() {
-        return vec![empty()];
+    if sketch.nodes.len() < 2 || sketch.edges.is_empty() {
+        return vec![too_small(sketch)];
     }
     let found = whole(location);
     let mut remarks: Vec<Remark> = found.into_iter().map(|finding| of_finding(finding, location)).collect();
@@ -70,10 +70,13 @@ pub fn check(sketch: &Sketch, location: &mut Location) -> Vec<Remark> {
     remarks
 }
 
-/// What is said of a sketch without nodes: there is nothing else to be looked at.
-fn empty() -> Remark {
-    let text = "there is no node yet; a location needs at least two, and an edge between them";
-    Remark { level: Level::Refused, code: Some("M-ID"), text: text.to_owned(), subject: Subject::Whole, at: None }
+/// What is said of a sketch on which nobody could walk: there is nothing else to be looked at.
+fn too_small(sketch: &Sketch) -> Remark {
+    let (nodes, edges) = (sketch.nodes.len(), sketch.edges.len());
+    let text = format!(
+        "there are {nodes} nodes and {edges} edges; a location needs at least two nodes, and an edge between them"
+    );
+    Remark { level: Level::Refused, code: Some("M-ID"), text, subject: Subject::Whole, at: None }
 }
 
 fn of_finding(finding: Finding, location: &Location) -> Remark {

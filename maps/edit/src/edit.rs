@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
-use socrates_model::NodeId;
+use socrates_model::{AreaName, NodeId};
 
 use crate::sketch::{Door, Edge, Node, Sketch, Spot};
 
@@ -105,6 +105,13 @@ pub enum Edit {
         /// The door.
         door: Door,
     },
+    /// What people call the area of these nodes: they belong to the area of that name and to no other.
+    Call {
+        /// The nodes.
+        nodes: Vec<NodeId>,
+        /// The name, without an article; empty for none.
+        name: String,
+    },
     /// The sentence about the place.
     Describe {
         /// The text.
@@ -183,6 +190,12 @@ pub enum EditError {
         /// Most characters.
         most: usize,
     },
+    /// A name that no area can have.
+    #[error("`{name}` is no name of an area; allowed: 1 to 60 letters on one line, no blank at either end")]
+    NoName {
+        /// The name.
+        name: String,
+    },
     /// Too much of something.
     #[error("there would be {found} {what}; allowed: {most}")]
     TooMany {
@@ -245,6 +258,7 @@ impl Sketch {
                 *slot.ok_or_else(|| EditError::NoDoor { id: id.clone() })? = door.clone();
                 Ok(Edit::ChangeDoor { id, door })
             }
+            Edit::Call { nodes, name } => self.call(nodes, name),
             Edit::Describe { text } => {
                 text_fits("description", &text, DESCRIPTION_CHARS, true)?;
                 self.description.clone_from(&text);
@@ -320,6 +334,27 @@ impl Sketch {
             }
         }
         Ok(Edit::RenameNode { id, to })
+    }
+
+    fn call(&mut self, nodes: Vec<NodeId>, name: String) -> Result<Edit, EditError> {
+        if nodes.is_empty() {
+            return Err(EditError::Nothing);
+        }
+        nodes.iter().try_for_each(|id| self.has(id))?;
+        if !name.is_empty() && !socrates_maps::is_area_name(&name) {
+            return Err(EditError::NoName { name });
+        }
+        // Names differ by more than capitals: the area keeps the name that it has.
+        let lower = name.to_lowercase();
+        let named = |area: &&mut AreaName| area.name.to_lowercase() == lower;
+        self.names.iter_mut().for_each(|area| area.nodes.retain(|id| !nodes.contains(id)));
+        match self.names.iter_mut().find(named) {
+            Some(area) => area.nodes.extend(nodes.iter().cloned()),
+            None if name.is_empty() => {}
+            None => self.names.push(AreaName { name: name.clone(), nodes: nodes.clone() }),
+        }
+        self.names.retain(|area| !area.nodes.is_empty());
+        Ok(Edit::Call { nodes, name })
     }
 
     fn retype(&mut self, nodes: Vec<NodeId>, edges: Vec<Pair>, kind: String) -> Result<Edit, EditError> {

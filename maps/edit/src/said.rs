@@ -32,6 +32,15 @@ impl Edit {
             Self::AddDoor(door) => format!("added door {}", door.id),
             Self::ChangeDoor { id, door } if *id != door.id => format!("renamed door {id} to {}", door.id),
             Self::ChangeDoor { id, .. } => format!("changed door {id}"),
+            Self::Call { nodes, name } => {
+                let what = nodes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                let verb = if nodes.len() == 1 { "is" } else { "are" };
+                if name.is_empty() {
+                    format!("{what} {verb} called nothing")
+                } else {
+                    format!("{what} {verb} called {name}")
+                }
+            }
             Self::Describe { .. } => "changed the description".to_owned(),
             Self::Several(edits) => match edits.as_slice() {
                 [first, second] => format!("{}, {}", first.said(), second.said()),

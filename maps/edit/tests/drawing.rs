@@ -144,6 +144,8 @@ fn what_cannot_be_done_is_refused_with_its_name_and_changes_nothing() {
             Edit::Retype { nodes: vec![id("h0")], edges: vec![], kind: "A\nB".into() },
             EditError::Word { what: "type", found: 3, most: 100 },
         ),
+        (Edit::Call { nodes: vec![id("zz")], name: "lab".into() }, EditError::NoNode { id: id("zz") }),
+        (Edit::Call { nodes: vec![id("h0")], name: " lab".into() }, EditError::NoName { name: " lab".into() }),
     ] {
         // One wrong edit of several undoes the others.
         let several = Edit::Several(vec![Edit::Describe { text: "changed".into() }, edit.clone()]);
@@ -324,4 +326,30 @@ fn a_map_of_20_000_pixels_comes_in_tiles_in_which_a_thin_wall_is_not_lost() {
     assert_ne!(whole, blank, "the wall of one cell is seen in the smallest picture");
     assert_eq!(decoded(&tile(&grid, 0, 39, 2).unwrap()), (32, 476));
     assert_eq!((tile(&grid, 7, 0, 0), tile(&grid, 0, 40, 0), tile(&grid, 0, 0, usize::MAX)), (None, None, None));
+}
+
+#[test]
+fn a_node_is_called_by_one_name_and_an_area_without_nodes_has_none() {
+    let (mut sketch, location) = office();
+    let before = sketch.names.clone();
+    let called = |sketch: &Sketch| -> Vec<(String, usize)> {
+        sketch.names[before.len()..].iter().map(|area| (area.name.clone(), area.nodes.len())).collect()
+    };
+    let mut call = |nodes: &[&str], name: &str| {
+        let nodes = nodes.iter().map(|node| id(node)).collect();
+        sketch.apply(Edit::Call { nodes, name: name.to_owned() }).unwrap();
+        called(&sketch)
+    };
+    assert_eq!(call(&["h0", "h1"], "west end"), [("west end".to_owned(), 2)]);
+    assert_eq!(call(&["h2"], "West End"), [("west end".to_owned(), 3)], "capitals make no other name");
+    assert_eq!(call(&["h1"], "crossing"), [("west end".to_owned(), 2), ("crossing".to_owned(), 1)]);
+    assert_eq!(call(&["h1"], ""), [("west end".to_owned(), 2)]);
+    // What is written is read again.
+    let files = shipped::files("office").unwrap();
+    let mut files: std::collections::BTreeMap<String, Vec<u8>> =
+        files.iter().map(|(name, bytes)| ((*name).to_owned(), bytes.to_vec())).collect();
+    for (name, text) in sketch.files(&location.grid) {
+        files.insert(name.to_owned(), text.into_bytes());
+    }
+    assert_eq!(socrates_maps::parse(&files, "office").unwrap().names, sketch.names);
 }

@@ -278,7 +278,7 @@ impl Attempt {
             unmet.push(Unmet::new(
                 "elevators",
                 cars.to_string(),
-                format!("{got}, for there is no longer wall for a lobby"),
+                format!("got {got}, for there is no longer wall for a lobby"),
             ));
         }
         let mut chains = chains(asked);
@@ -350,7 +350,7 @@ fn merged(unmet: &mut Vec<Unmet>) {
         }
     }
     unmet.extend(out.into_iter().map(|(one, count)| {
-        if count == 1 { one } else { Unmet { got: format!("{}, {count} times", one.got), ..one } }
+        if count == 1 { one } else { Unmet { answer: format!("{}, {count} times", one.answer), ..one } }
     }));
 }
 

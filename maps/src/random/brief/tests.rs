@@ -83,8 +83,8 @@ fn what_cannot_be_met_is_named_with_what_was_asked() {
     };
     for (text, part) in [
         ("kind = 'office'\nrooms = [{ type = 'hall', area_m2 = [900, 950] }]", "rooms `hall`: asked 1, 900 to 950 m²"),
-        ("kind = 'home'\nform = 'spine'\nelevators = 3", "elevators: asked 3, got"),
-        ("kind = 'office'\ncorridor_m = 9.0\nelevators = 1", "corridor_m: asked 9 m, got 1.2 to 6 m"),
+        ("kind = 'home'\nform = 'spine'\nelevators = 3", "elevators: asked 3; got"),
+        ("kind = 'office'\ncorridor_m = 9.0\nelevators = 1", "corridor_m: asked 9 m; allowed: 1.2 to 6 m"),
         ("kind = 'office'\nrooms = [{ type = 'kitchen', beside = 'pool' }]", "rooms `kitchen`: beside: asked `pool`"),
         ("kind = 'office'", "rooms: asked none"),
         (
