@@ -53,8 +53,9 @@ fn the_shipped_office_is_drawn_from_empty_to_the_same_files() {
         }
         assert_eq!((&found["undone"], &found["redone"]), (&json!([0, 0, 0]), &json!(true)), "{found}");
         assert_eq!((&found["told"][0], &found["told"][1]), (&json!("M-WALL"), &json!(1)), "{found}");
+        assert_eq!(found["names"], json!(["way in", "way in", "way in h0"]), "{found}");
         assert_eq!(found["walked"][1], json!(true), "{found}");
-        for moment in ["empty", "nodes", "drawn", "wall", "way", "proposed", "saved"] {
+        for moment in ["empty", "nodes", "drawn", "wall", "called", "way", "proposed", "saved"] {
             let seen = &found[moment];
             assert!(seen["wide"].as_f64() <= seen["inner"].as_f64(), "{size}: cut at {moment}: {seen}");
             assert!(seen["tall"].as_f64() <= seen["high"].as_f64(), "{size}: scrolls at {moment}: {seen}");

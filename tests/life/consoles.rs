@@ -35,11 +35,16 @@ fn answers(folder: &Path) -> BTreeMap<String, String> {
 }
 
 /// Runs the line that the console printed while somebody says this to every question.
-fn run(folder: &Path, console: &Console, line: &str, mut says: impl FnMut(u64, &str)) -> Finished {
+fn run(folder: &Path, console: &Console, line: &str, says: impl FnMut(u64, &str)) -> Finished {
     std::fs::write(folder.join("my.toml"), WAREHOUSE).unwrap();
     let line = console.told[line].as_str().unwrap();
     let words: Vec<&str> = line.strip_prefix("socrates ").unwrap().split(' ').collect();
-    let args = [&["--format", "json"], words.as_slice(), &["--out", "answered"]].concat();
+    answered(folder, console, &[words.as_slice(), &["--out", "answered"]].concat(), says)
+}
+
+/// Runs a command to its end while somebody says this to every question.
+fn answered(folder: &Path, console: &Console, words: &[&str], mut says: impl FnMut(u64, &str)) -> Finished {
+    let args = [&["--format", "json"], words].concat();
     let mut child = start(PROGRAM, &args, folder, "answered").unwrap();
     let ended = poll(|| {
         for (number, form) in console.waiting().unwrap() {
@@ -122,6 +127,42 @@ fn a_refusal_ends_the_run_and_a_faulty_answer_is_asked_again() {
     assert!(told.contains("E-REFUSAL") && told.contains("the map has no such place"), "{told}");
     assert_eq!(asked["proposal"], 2, "{asked:?}");
     assert!(asked.values().all(|times| *times <= 2), "a refusal is not asked again: {asked:?}");
+}
+
+#[test]
+fn a_building_is_made_from_words_and_asked_for_again_where_it_cannot_be_built() {
+    let folder = tempfile::tempdir().unwrap();
+    let console = Console::start(PROGRAM, folder.path()).unwrap();
+    let line = console.told["run"].as_str().unwrap();
+    let author: Vec<&str> = line.strip_prefix("socrates run my.toml ").unwrap().split(' ').collect();
+    let room = |kind: &str, count: u32| json!({"type": kind, "count": count, "name": null, "area_m2": null, "beside": null, "open": null, "door_m": null});
+    let brief = |elevators: u32| {
+        json!({
+            "kind": "hospital", "form": null, "corridor_m": null, "door_m": null, "elevators": elevators, "only": false,
+            "rooms": [room("ward", 2), room("chapel", 1)], "left_out": ["a roof garden"],
+        })
+    };
+    let sentence = "Ein Krankenhaus mit zwei Stationen, einer Kapelle, zwei Aufzügen und einem Dachgarten";
+    let words = [&["map", "build", sentence, "--out", "built"], author.as_slice()].concat();
+    let mut refused = String::new();
+    let finished = answered(folder.path(), &console, &words, |number, form| {
+        assert_eq!(form, "building");
+        let (_, one) = console.page(&format!("GET /questions/{number}"), &Value::Null).unwrap();
+        let turns = one["turns"].as_array().unwrap();
+        assert!(turns[1]["text"].as_str().unwrap().contains(sentence), "{one}");
+        let again = turns.len() > 2;
+        if again {
+            refused = turns[3]["text"].as_str().unwrap().to_owned();
+        }
+        let (status, told) = console.answer(number, &brief(if again { 2 } else { 9 }).to_string()).unwrap();
+        assert_eq!(status, 200, "{told}");
+    });
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    assert!(refused.contains("elevators: asked 9; allowed: at most 4"), "{refused}");
+    assert!(finished.err.contains("left out   a roof garden") || finished.out.contains("left out   a roof garden"));
+    let location = socrates_maps::load(&folder.path().join("built")).unwrap();
+    assert!(location.named("chapel").is_some() && location.named("ward 2").is_some(), "{:?}", location.names);
+    assert_eq!(location.doors.iter().filter(|door| door.id.starts_with("elevator")).count(), 2);
 }
 
 #[test]

@@ -7,7 +7,9 @@ use serde_json::json;
 use socrates_maps::random::{Built, NotBuilt};
 use socrates_model::BuildingBrief;
 
-use crate::exit::Complaint;
+use crate::authors;
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
 use crate::files;
 use crate::map;
 use crate::output::Printer;
@@ -18,18 +20,48 @@ const MAX_BYTES: u64 = 256 * 1024;
 /// Name of the brief in the folder of its building.
 const BRIEF: &str = "building.toml";
 
+/// What is built, and how.
+#[derive(Debug, Clone)]
+pub struct BuildOptions {
+    /// A file with a brief, or a sentence.
+    pub what: String,
+    /// The language model that makes a brief of a sentence; none for the rules of this program.
+    pub author: Option<String>,
+    /// What the brief leaves open is drawn by it.
+    pub seed: u64,
+    /// Folder to write.
+    pub out: PathBuf,
+}
+
+/// The author that is no model.
+const OFFLINE: &str = "offline";
+
 /// Builds what a brief asks for into a folder: the floor plan, the location that it makes, and the brief.
 ///
-/// `what` is a file, or a sentence. A folder that holds anything already is left as it is.
-pub fn build(talk: &Printer, what: &str, seed: u64, out: &Path) -> Result<(), Complaint> {
-    let brief = brief(what)?;
+/// A folder that holds anything already is left as it is.
+pub async fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<(), Complaint> {
+    let BuildOptions { what, author, seed, out } = options;
+    is_free(out)?;
+    let brief = match author {
+        Some(author) if author != OFFLINE && !is_file(what) => asked(talk, config, author, what, *seed).await?,
+        Some(_) | None => brief(what)?,
+    };
+    drawn(talk, &brief, *seed, out)
+}
+
+fn is_free(out: &Path) -> Result<(), Complaint> {
     if std::fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some()) {
         let message = format!("`{}` is there already and is not an empty folder", out.display());
         return Err(Complaint::input(message, "name another folder with `--out`, or remove it"));
     }
-    let built = socrates_maps::random::build(&brief, seed).map_err(|why| not_built(&why))?;
+    Ok(())
+}
+
+/// Draws what a brief asks for, and writes it.
+fn drawn(talk: &Printer, brief: &BuildingBrief, seed: u64, out: &Path) -> Result<(), Complaint> {
+    let built = socrates_maps::random::build(brief, seed).map_err(|why| not_built(&why))?;
     let mut all = built.files.clone();
-    let text = toml::to_string(&brief)
+    let text = toml::to_string(brief)
         .map_err(|why| Complaint::input(format!("the brief cannot be written: {why}"), "leave unusual letters out"))?;
     all.insert(BRIEF.to_owned(), text.into_bytes());
     map::folder(&all, out)?;
@@ -87,10 +119,40 @@ fn not_built(why: &NotBuilt) -> Complaint {
     }
 }
 
+/// The brief that a language model makes of a sentence, with what it left out; asked again with what cannot be built.
+async fn asked(
+    talk: &Printer,
+    config: &Config,
+    author: &str,
+    words: &str,
+    seed: u64,
+) -> Result<BuildingBrief, Complaint> {
+    let builds = |brief: &BuildingBrief| match socrates_maps::random::build(brief, seed) {
+        Ok(_) => Vec::new(),
+        Err(NotBuilt::Unmet(unmet)) => unmet.iter().map(ToString::to_string).collect(),
+        Err(NotBuilt::Flawed(faults)) => faults.iter().map(ToString::to_string).collect(),
+    };
+    let keys = authors::keys(config)?;
+    let made = socrates_author::building::brief(author, &keys, words, seed, builds).await.map_err(|why| {
+        let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
+        let hint = "say it in simpler words, write a brief as a file, or leave `--author` out (docs/buildings.md)";
+        Complaint::faults(format!("`{author}` made no building"), &[why.fault()], hint).with_code(code)
+    })?;
+    for wish in &made.left_out {
+        talk.line(&format!("left out   {wish}"));
+    }
+    Ok(made.brief)
+}
+
+fn is_file(what: &str) -> bool {
+    let path = Path::new(what);
+    path.is_file() || path.extension().is_some_and(|ext| ext == "toml")
+}
+
 /// The brief in a file, or the one that a sentence says.
 fn brief(what: &str) -> Result<BuildingBrief, Complaint> {
     let path = PathBuf::from(what);
-    if path.is_file() || path.extension().is_some_and(|ext| ext == "toml") {
+    if is_file(what) {
         let hint = "docs/buildings.md shows the form of a brief";
         let text = files::text(&path, MAX_BYTES, hint)?;
         return toml::from_str(&text).map_err(|why| {
@@ -104,7 +166,7 @@ fn brief(what: &str) -> Result<BuildingBrief, Complaint> {
         let words: Vec<String> = read.unread.iter().map(|word| format!("`{word}`")).collect();
         return Err(Complaint::input(
             format!("{} not understood: {}", plural(words.len(), "word"), words.join(", ")),
-            "say it with rooms, counts, sizes and `next to`, or write a brief as a file (docs/buildings.md)",
+            "say it with rooms, counts, sizes and `next to`, ask a model (`--author`), or write a brief as a file (docs/buildings.md)",
         ));
     }
     read.brief.ok_or_else(|| {
@@ -119,6 +181,12 @@ fn brief(what: &str) -> Result<BuildingBrief, Complaint> {
 mod tests {
     use super::*;
     use crate::output::Format;
+
+    /// A building without a model.
+    fn build(talk: &Printer, what: &str, seed: u64, out: &Path) -> Result<(), Complaint> {
+        is_free(out)?;
+        drawn(talk, &brief(what)?, seed, out)
+    }
 
     #[test]
     fn a_sentence_becomes_a_folder_whose_brief_builds_it_again() {

@@ -28,6 +28,7 @@ pub mod confusion;
 
 mod account;
 pub mod attempt;
+pub mod building;
 pub mod job;
 pub mod settings;
 pub mod variants;

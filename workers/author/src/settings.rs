@@ -167,14 +167,17 @@ impl Author for Told {
 /// # Errors
 /// [`AskError`]: `J-REQUEST` for a setting that means no server, else why there was no answer.
 pub async fn probe(setting: &str, keys: &Keys) -> Result<Probe, AskError> {
+    client(setting, keys)?.probe().await.map_err(|error| ask_error(&error))
+}
+
+/// The client of a setting that names a server.
+pub(crate) fn client(setting: &str, keys: &Keys) -> Result<ChatClient, AskError> {
     let author = read(setting)?;
     let AuthorSpec::Server(kind, model) = &author else {
         let message = format!("`{author}` is no server; allowed: openai:<model>, ollama:<model> and the like");
         return Err(AskError::new(FaultCode::JRequest, message));
     };
-    let dialect = dialect(*kind);
-    let client = ChatClient::new(config(dialect, model, keys)?).map_err(|error| ask_error(&error))?;
-    client.probe().await.map_err(|error| ask_error(&error))
+    ChatClient::new(config(dialect(*kind), model, keys)?).map_err(|error| ask_error(&error))
 }
 
 /// Looks whether the author of a setting can be asked: a key where one is needed, a folder of recordings that is there, a server

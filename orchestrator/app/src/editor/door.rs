@@ -26,7 +26,7 @@ use crate::loopback::{self, body, refused, told};
 /// Bytes of a request, at most: a sketch of the largest size.
 const MOST_BYTES: usize = 16 << 20;
 /// Types that are offered first, in the order of the keys 1 to 9; one for each class of places.
-const KINDS: [&str; 10] = [
+const KINDS: [&str; 11] = [
     "CORRIDOR",
     "INTERSECTION",
     "DOORWAY",
@@ -37,6 +37,7 @@ const KINDS: [&str; 10] = [
     "EXIT",
     "ELEVATOR LOBBY",
     "IN ELEVATOR",
+    "CORRIDOR END",
 ];
 /// What a stranger is told, and what an answer without a page may do: nothing.
 const WORDS: loopback::Words = loopback::Words {

@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use socrates_app::build::{self, BuildOptions};
+use socrates_app::config::Config;
 use socrates_app::editor::{self, EditOptions};
 use socrates_app::output::Printer;
-use socrates_app::{build, graphs, map};
+use socrates_app::{graphs, map};
 
 use super::{Outcome, done};
 
@@ -65,6 +67,9 @@ enum MapVerb {
     Build {
         /// A brief (a .toml file), or a sentence: "a hospital with two wards, a lobby with two elevators".
         what: String,
+        /// Language model that makes a brief of the sentence, such as openai:MODEL or console; without, rules of this program do.
+        #[arg(long)]
+        author: Option<String>,
         /// What the brief leaves open is drawn by this seed; the same brief and seed give the same files.
         #[arg(long, default_value_t = 1)]
         seed: u64,
@@ -160,7 +165,7 @@ impl Map {
         matches!(self.verb, MapVerb::Edit(Edit { tied: true, .. }))
     }
 
-    pub(super) async fn act(&self, talk: &Printer) -> Outcome {
+    pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
         done(match &self.verb {
             MapVerb::List => map::list(talk),
             MapVerb::Check { location } => map::check(talk, location),
@@ -174,7 +179,11 @@ impl Map {
                 };
                 map::annotate(talk, map, &options)
             }
-            MapVerb::Build { what, seed, out } => build::build(talk, what, *seed, out),
+            MapVerb::Build { what, author, seed, out } => {
+                let options =
+                    BuildOptions { what: what.clone(), author: author.clone(), seed: *seed, out: out.clone() };
+                build::build(talk, config, &options).await
+            }
             MapVerb::Export { location, to, out } => graphs::export(talk, location, to, out.as_deref()),
             MapVerb::Import { file, from, map, level, out } => {
                 let options = graphs::ImportOptions {

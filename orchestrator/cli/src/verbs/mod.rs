@@ -215,7 +215,7 @@ impl Verb {
             Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
             Self::Config(verb) => verb.act(talk, config),
             Self::Bt(verb) => verb.act(talk),
-            Self::Map(verb) => verb.act(talk).await,
+            Self::Map(verb) => verb.act(talk, config).await,
             Self::Author(verb) => verb.act(talk).await,
             Self::Evaluate(verb) => verb.act(talk, config).await,
             Self::Experiment(verb) => verb.act(talk, config).await,

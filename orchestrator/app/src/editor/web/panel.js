@@ -31,6 +31,7 @@ function showAll() {
   showWay();
   showProposal();
   showFindings();
+  showNames();
   if (document.activeElement !== $("description")) $("description").value = now.sketch.description;
   $("description").readOnly = now.read_only;
   const types = [...new Set([...map.kinds, ...Object.keys(now.classes)])];
@@ -64,7 +65,8 @@ function setKind(kind) {
   showTools();
   if (!choice.nodes.size && !choice.edges.size) return;
   const edges = [...choice.edges].map(pairOf);
-  edit({ retype: { nodes: [...choice.nodes], edges, kind } });
+  const nodes = [...choice.nodes];
+  edit(() => retyped(nodes, edges, kind));
 }
 
 function showTools() {
@@ -86,7 +88,7 @@ function showChosen() {
   const box = $("chosen"), [node] = choice.nodes, [edge] = choice.edges, [door] = choice.doors;
   const things = [choice.nodes, choice.edges, choice.doors].map((set) => [...set]);
   const what = choice.size === 1 ? (node ? nodeOf(node) : edge ? now.sketch.edges.find((e) => edgeKey(e) === edge) : now.sketch.doors.find((d) => d.id === door)) : null;
-  const print = JSON.stringify([things, what, now.read_only]);
+  const print = JSON.stringify([things, what, things[0].map((id) => areaOf(id)?.name), now.read_only]);
   if (print === shownChoice) return;
   shownChoice = print;
   if (!choice.size) box.replaceChildren();
@@ -110,13 +112,39 @@ async function orAnew(what) {
   if (!(await what)) { shownChoice = ""; showChosen(); }
 }
 
+const areaOf = (id) => areas().find((area) => area.nodes.includes(id));
+
+// What people call the area of these nodes.
+function called(ids) {
+  const names = [...new Set(ids.map((id) => areaOf(id)?.name || ""))];
+  return field("area-name", "Called, by people and requests", names.length === 1 ? names[0] : "", (name) => orAnew(edit({ call: { nodes: ids, name } })), { list: "areas", maxlength: "60", placeholder: names.length === 1 ? "pharmacy, ward 2, …" : "several names" });
+}
+
+function showNames() {
+  const names = areas();
+  $("names-head").hidden = !names.length;
+  $("areas").replaceChildren(...names.map((area) => element("option", { value: area.name })));
+  $("names").replaceChildren(...names.map((area) => element("li", {}, element("button", { type: "button", title: area.nodes.join(", "), onclick: () => chooseArea(area) }, area.name, element("span", { class: "quiet" }, ` ${area.nodes.length === 1 ? area.nodes[0] : `${area.nodes.length} nodes`}`)))));
+}
+
+function chooseArea(area) {
+  choice.clear();
+  area.nodes.forEach((id) => choice.nodes.add(id));
+  choice.keep();
+  const first = nodeOf(area.nodes[0]), [x, y] = first ? toScreen(first.at) : [0, 0], [w, h] = stageSize();
+  if (first && (x < 0 || y < 0 || x > w || y > h - 30)) lookAt(first.at);
+  drawAll();
+  showChosen();
+}
+
 function ofNode(node) {
   const [x, y] = node.at, [mx, my] = meters(node.at);
   const move = (at) => (at.every(Number.isFinite) ? orAnew(edit({ move_nodes: { nodes: [[node.id, at]] } })) : (trouble("A position is a number of pixels from the top left."), shownChoice = "", showChosen()));
   return [
     element("h2", {}, `Node ${node.id}`),
     field("node-id", "Name", node.id, async (to) => { choice.nodes.add(to); if (await edit({ rename_node: { id: node.id, to } })) say(`renamed ${node.id} to ${to}`); else { choice.nodes.delete(to); shownChoice = ""; showChosen(); } }),
-    field("node-kind", "Type", node.kind, (kind) => orAnew(edit({ retype: { nodes: [node.id], edges: [], kind } })), { list: "kinds", maxlength: "100" }),
+    field("node-kind", "Type", node.kind, (kind) => orAnew(edit(() => retyped([node.id], [], kind))), { list: "kinds", maxlength: "100" }),
+    called([node.id]),
     element("div", { class: "pair" }, field("node-x", "x, pixels", x, (value) => move([Number(value || "x"), y])), field("node-y", "y, pixels", y, (value) => move([x, Number(value || "x")]))),
     element("p", { class: "quiet small" }, `(${mx.toFixed(2)}, ${my.toFixed(2)}) m on the map`),
     removal(true),
@@ -162,7 +190,8 @@ function ofDoor(door) {
 function ofMany() {
   const parts = [[choice.nodes, "node"], [choice.edges, "edge"], [choice.doors, "door"]].filter(([set]) => set.size).map(([set, word]) => `${set.size} ${word}${set.size === 1 ? "" : "s"}`);
   const kind = choice.nodes.size + choice.edges.size ? [field("many-kind", "Type of all", "", (typed) => typed && setKind(typed), { list: "kinds", maxlength: "100" })] : [];
-  return [element("h2", {}, parts.join(", ")), ...kind, removal(choice.nodes.size > 0)];
+  const area = choice.nodes.size ? [called([...choice.nodes])] : [];
+  return [element("h2", {}, parts.join(", ")), ...kind, ...area, removal(choice.nodes.size > 0)];
 }
 
 function remove(join) {

@@ -71,8 +71,11 @@ function showDrag() {
 }
 
 function edgeKind(a, b) {
-  const typed = $("edge-kind").value.trim();
-  if (typed) return typed;
+  return $("edge-kind").value.trim() || kindByEnds(a, b);
+}
+
+// The type of a way between two kinds of places.
+function kindByEnds(a, b) {
   const classes = [a, b].map((kind) => now.classes[kind] || map.classes[kind]);
   if (classes.includes("elevator")) return classes.every((one) => one === "elevator") ? a : "ELEVATOR DOORWAY";
   if (classes.includes("doorway")) return "DOORWAY";
@@ -118,7 +121,15 @@ async function act(spot, event, on = {}) {
     try { return addDoor(await ask("/opening", { near: spot })); } catch (why) { return trouble(told(why)); }
   }
   if (tool === "edge") {
-    if (!node) return say("An edge begins at a node.");
+    if (!node && !held) return say("An edge begins at a node.");
+    if (!node) {
+      // On free floor a node is made, as where an edge is dragged there.
+      const start = nodeOf(held), id = freeName();
+      held = false;
+      choice.clear();
+      choice.nodes.add(id);
+      return start ? edit({ several: [{ add_node: { id, kind: typed(), at: snapped(spot, event).spot } }, { add_edge: { from: start.id, to: id, kind: edgeKind(start.kind, typed()) } }] }) : null;
+    }
     if (!held || held === node.id) { held = node.id; choose("nodes", node.id); return say(`From ${node.id}: click the node where the edge ends.`); }
     const from = nodeOf(held);
     held = false;
@@ -233,6 +244,18 @@ function showWhere([x, y]) {
 }
 
 // ---- keys
+
+// The edit that gives nodes and edges another type. Edges that have their type by their ends have it by the new ones.
+function retyped(nodes, edges, kind) {
+  const changed = new Set(nodes), keys = new Set(edges.map((pair) => JSON.stringify(pair))), parts = [{ retype: { nodes, edges, kind } }];
+  for (const edge of now.sketch.edges) {
+    if (keys.has(edgeKey(edge)) || !(changed.has(edge.from) || changed.has(edge.to))) continue;
+    const [from, to] = [edge.from, edge.to].map((id) => nodeOf(id).kind), of = (id, old) => (changed.has(id) ? kind : old);
+    const next = kindByEnds(of(edge.from, from), of(edge.to, to));
+    if (edge.kind === kindByEnds(from, to) && next !== edge.kind) parts.push({ retype: { nodes: [], edges: [[edge.from, edge.to]], kind: next } });
+  }
+  return parts.length === 1 ? parts[0] : { several: parts };
+}
 
 // The edit that takes these nodes and doors elsewhere; those that are gone by then are left out.
 function shifted(nodes, doors, by) {

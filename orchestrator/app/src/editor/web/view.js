@@ -31,6 +31,8 @@ const toScreen = ([x, y]) => [(x - view.x) * view.scale, (y - view.y) * view.sca
 const toImage = ([x, y]) => [x / view.scale + view.x, y / view.scale + view.y];
 const stageSize = () => [$("stage").clientWidth, $("stage").clientHeight];
 const at = (node) => dragged.get(node.id) || node.at;
+// Names of areas, of which a file without any says nothing.
+const areas = () => now.sketch.names || [];
 const nodeOf = (id) => now.sketch.nodes.find((node) => node.id === id);
 const colorOf = (kind) => COLORS[now.classes[kind]] || COLORS.plain;
 
@@ -119,10 +121,11 @@ function tileOf(level, column, row) {
 function drawAll() {
   if (!now) return;
   const svg = $("drawn");
-  if (!layers.edges) for (const name of ["proposal", "way", "edges", "doors", "nodes", "marks", "person", "rubber"]) layers[name] = made("g", { id: `layer-${name}` }, svg);
+  if (!layers.edges) for (const name of ["proposal", "way", "edges", "doors", "nodes", "names", "marks", "person", "rubber"]) layers[name] = made("g", { id: `layer-${name}` }, svg);
   drawEdges();
   drawDoors();
   drawNodes();
+  drawNames();
   drawMarks();
   drawWay();
   drawProposal();
@@ -169,6 +172,17 @@ function drawNodes() {
     const label = labels || isChosen ? made("text", { class: "label", x: x + 8, y: y - 6 }, layers.nodes) : null;
     if (label) label.textContent = node.id;
     shapes.nodes.set(node.id, { dot, label });
+  }
+}
+
+// The name of an area stands below its first node, the one to go to.
+function drawNames() {
+  layers.names.replaceChildren();
+  for (const area of areas()) {
+    const node = nodeOf(area.nodes[0]);
+    if (!node) continue;
+    const [x, y] = toScreen(at(node));
+    made("text", { class: "label area", x, y: y + 20 }, layers.names).textContent = area.name;
   }
 }
 
