@@ -1,0 +1,184 @@
+//! The cumulative logit model of ratings, with one random intercept per person.
+
+use nalgebra::DVector;
+
+use super::optimize::{curvature, minimum};
+use super::quadrature::gauss_hermite;
+use super::{NoValue, dist, float};
+
+/// Nodes of the quadrature.
+const NODES: usize = 10;
+/// Most different answers; a mean of many items may have more, and is then too fine for this model.
+const MAX_LEVELS: usize = 40;
+
+/// An effect with its standard error and Wald's p.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// The effect on the log of the odds of a higher rating.
+    pub effect: f64,
+    /// Its standard error.
+    pub error: f64,
+    /// Two-sided p by Wald's z.
+    pub p: f64,
+}
+
+/// A fitted model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ordinal {
+    /// Thresholds between neighboring answers, logit.
+    pub thresholds: Vec<f64>,
+    /// An effect for each column of the design.
+    pub terms: Vec<Term>,
+    /// Standard deviation of the people's intercepts, logit; 0 in the model without.
+    pub sigma: f64,
+    /// Log likelihood.
+    pub log_likelihood: f64,
+}
+
+/// Observations sorted for the fit.
+struct Data<'d> {
+    /// Per person, each answer's level from 0 and its columns of the design.
+    people: Vec<Vec<(usize, &'d [f64])>>,
+    levels: usize,
+    columns: usize,
+    rule: Vec<(f64, f64)>,
+}
+
+/// Fits `logit P(rating ≤ level j) = θ_j − x·β − u_person` to ratings with their person and their columns `x`; with
+/// `random = false` all `u` are 0. The intercepts are integrated out by adaptive Gauss–Hermite quadrature with ten nodes (Pinheiro
+/// and Bates 1995), as `clmm(nAGQ = 10)` of the R package `ordinal` does (Christensen 2022).
+///
+/// # Errors
+/// Fewer than two different answers, too many, or a likelihood without a maximum.
+#[expect(clippy::indexing_slicing, reason = "indices run over the sizes of the matrices that are made here")]
+pub fn ordinal(rows: &[(usize, f64, Vec<f64>)], random: bool) -> Result<Ordinal, NoValue> {
+    let mut answers: Vec<f64> = rows.iter().map(|(_, answer, _)| libm::round(answer * 1e6) / 1e6).collect();
+    let coded = answers.clone();
+    answers.sort_by(f64::total_cmp);
+    answers.dedup_by(|a, b| a.total_cmp(b).is_eq());
+    if answers.len() < 2 {
+        return Err(NoValue::Constant);
+    }
+    if answers.len() > MAX_LEVELS || rows.len() < answers.len() + 4 {
+        return Err(NoValue::TooFew { what: "ratings per level", found: rows.len(), needed: answers.len() + 4 });
+    }
+    let people_count = rows.iter().map(|(person, _, _)| person + 1).max().unwrap_or(0);
+    let mut people = vec![Vec::new(); people_count];
+    for ((person, _, columns), answer) in rows.iter().zip(&coded) {
+        let level = answers.partition_point(|one| one < answer);
+        if let Some(of) = people.get_mut(*person) {
+            of.push((level, columns.as_slice()));
+        }
+    }
+    let columns = rows.first().map_or(0, |(_, _, columns)| columns.len());
+    let data = Data { people, levels: answers.len(), columns, rule: gauss_hermite(NODES) };
+    let cuts = data.levels - 1;
+    // Where nothing has an effect, thresholds are the logits of the cumulated shares.
+    let start: Vec<f64> = (1..data.levels)
+        .map(|level| {
+            let below = coded.iter().filter(|one| answers.get(level).is_some_and(|at| *one < at)).count();
+            let share = float(below) / float(coded.len());
+            libm::log(share / (1.0 - share))
+        })
+        .collect();
+    let free = cuts + columns + usize::from(random);
+    let start =
+        DVector::from_fn(free, |i, _| start.get(i).copied().unwrap_or(if i < cuts + columns { 0.0 } else { 1.0 }));
+    let target = |at: &DVector<f64>| data.minus_log_likelihood(at, random);
+    let at = minimum(&target, start).ok_or(NoValue::NoMaximum)?;
+    let sigma = if random { at[free - 1].abs() } else { 0.0 };
+    // At a variance of 0 the likelihood is flat in it: errors are then those of the model without.
+    let flat = random && sigma < 1e-3;
+    let (inner, of) = if flat { (at.rows(0, free - 1).into_owned(), false) } else { (at.clone(), random) };
+    let curved = curvature(&|x| data.minus_log_likelihood(x, of), &inner);
+    let covariance = curved.cholesky().ok_or(NoValue::NoMaximum)?.inverse();
+    let terms = (cuts..cuts + columns)
+        .map(|i| {
+            let (effect, error) = (at[i], libm::sqrt(covariance[(i, i)]));
+            Term { effect, error, p: dist::normal_two_sided(effect / error) }
+        })
+        .collect::<Vec<_>>();
+    if terms.iter().any(|term| term.effect.abs() > 15.0 || !term.error.is_finite()) {
+        return Err(NoValue::NoMaximum);
+    }
+    let thresholds = at.iter().take(cuts).copied().collect();
+    Ok(Ordinal { thresholds, terms, sigma, log_likelihood: -target(&at) })
+}
+
+/// `1 / (1 + exp(−x))`, and 0 or 1 far out.
+fn logistic(x: f64) -> f64 {
+    1.0 / (1.0 + libm::exp(-x))
+}
+
+impl Data<'_> {
+    fn minus_log_likelihood(&self, at: &DVector<f64>, random: bool) -> f64 {
+        let cuts = self.levels - 1;
+        if (1..cuts).any(|i| at[i] <= at[i - 1]) {
+            return f64::INFINITY;
+        }
+        let sigma = if random { at[cuts + self.columns] } else { 0.0 };
+        let mut total = 0.0;
+        // Upper and lower threshold of each answer, less its fixed effects.
+        let mut ends: Vec<(f64, f64)> = Vec::new();
+        for person in self.people.iter().filter(|person| !person.is_empty()) {
+            ends.clear();
+            ends.extend(person.iter().map(|(level, columns)| {
+                let eta: f64 = columns.iter().enumerate().map(|(i, x)| x * at[cuts + i]).sum();
+                let upper = if *level < cuts { at[*level] - eta } else { f64::INFINITY };
+                let lower = if *level > 0 { at[*level - 1] - eta } else { f64::NEG_INFINITY };
+                (lower, upper)
+            }));
+            let of = if random { self.integrated(&ends, sigma) } else { log_of(&ends, 0.0) };
+            if !of.is_finite() {
+                return f64::INFINITY;
+            }
+            total -= of;
+        }
+        total
+    }
+
+    /// Log of the integral of a person's likelihood over their intercept, which is `sigma` times a standard normal value.
+    fn integrated(&self, ends: &[(f64, f64)], sigma: f64) -> f64 {
+        let (mut mode, mut bend) = (0.0, 1.0);
+        for _ in 0..50 {
+            // Of log likelihood − v²/2: slope and bend in v.
+            let (mut first, mut second) = (-mode, -1.0);
+            for (lower, upper) in ends {
+                let (a, b) = (logistic(upper - sigma * mode), logistic(lower - sigma * mode));
+                let (wa, wb) = (a * (1.0 - a), b * (1.0 - b));
+                // d/dx log(F(u − x) − F(l − x)) = F(u − x) + F(l − x) − 1 for the logistic F.
+                first += sigma * (a + b - 1.0);
+                second -= sigma * sigma * (wa + wb);
+            }
+            bend = -second;
+            let step = first / bend;
+            mode += step;
+            if libm::fabs(step) < 1e-11 {
+                break;
+            }
+        }
+        let wide = libm::sqrt(2.0 / bend);
+        let logs: Vec<f64> = self
+            .rule
+            .iter()
+            .map(|(x, w)| {
+                let v = mode + wide * x;
+                libm::log(*w) + x * x - 0.5 * v * v + log_of(ends, sigma * v)
+            })
+            .collect();
+        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = logs.iter().map(|one| libm::exp(one - most)).sum();
+        most + libm::log(sum) + libm::log(wide) - 0.5 * libm::log(2.0 * std::f64::consts::PI)
+    }
+}
+
+/// Log likelihood of a person's answers at an intercept.
+fn log_of(ends: &[(f64, f64)], intercept: f64) -> f64 {
+    let sum = |(lower, upper): &(f64, f64)| {
+        let (a, b) = (upper - intercept, lower - intercept);
+        // F(a) − F(b) without cancellation far out: both in the upper tail are taken as lower tails.
+        let share = if b > 0.0 { logistic(-b) - logistic(-a) } else { logistic(a) - logistic(b) };
+        libm::log(share)
+    };
+    ends.iter().map(sum).sum()
+}
