@@ -11,10 +11,15 @@
 //!
 //! *Never here:* a file, a clock, a network, a generator without a seed, an address or a place of a participant.
 
+pub mod analyze;
+pub mod cell;
 pub mod design;
+pub mod exclude;
 pub mod instrument;
 mod problem;
 pub mod rating;
+pub mod read;
+pub mod simulate;
 pub mod stats;
 
 pub use problem::Problem;

@@ -30,6 +30,8 @@ pub use rank::{midranks, spearman};
 pub use reliability::{Alpha, Icc, Iccs, cronbach, icc, omega};
 pub use wilcoxon::{Wilcoxon, Zeros, wilcoxon};
 
+pub(crate) use dist::chi_upper;
+
 /// Why a statistic has no value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NoValue {

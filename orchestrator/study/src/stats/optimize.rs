@@ -2,66 +2,38 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Slope by central differences.
-#[expect(clippy::indexing_slicing, reason = "indices run over the sizes of the matrices that are made here")]
-fn slope(f: &dyn Fn(&DVector<f64>) -> f64, at: &DVector<f64>) -> DVector<f64> {
-    let mut x = at.clone();
-    DVector::from_fn(at.len(), |i, _| {
-        let h = 1e-5 * at[i].abs().max(1.0);
-        x[i] = at[i] + h;
-        let up = f(&x);
-        x[i] = at[i] - h;
-        let down = f(&x);
-        x[i] = at[i];
-        (up - down) / (2.0 * h)
-    })
-}
+/// A function with its slope; infinite where it is not defined.
+pub(super) type Sloped<'f> = dyn Fn(&DVector<f64>) -> (f64, DVector<f64>) + 'f;
 
-/// Second derivatives by central differences.
+/// Second derivatives by central differences of the slope.
 #[expect(clippy::indexing_slicing, reason = "indices run over the sizes of the matrices that are made here")]
-pub(super) fn curvature(f: &dyn Fn(&DVector<f64>) -> f64, at: &DVector<f64>) -> DMatrix<f64> {
+pub(super) fn curvature(f: &Sloped<'_>, at: &DVector<f64>) -> DMatrix<f64> {
     let n = at.len();
-    let step = |i: usize| 2e-4 * at[i].abs().max(1.0);
     let mut found = DMatrix::zeros(n, n);
     let mut x = at.clone();
-    let middle = f(at);
     for i in 0..n {
-        let hi = step(i);
-        x[i] = at[i] + hi;
-        let up = f(&x);
-        x[i] = at[i] - hi;
-        let down = f(&x);
+        let h = 1e-5 * at[i].abs().max(1.0);
+        x[i] = at[i] + h;
+        let up = f(&x).1;
+        x[i] = at[i] - h;
+        let down = f(&x).1;
         x[i] = at[i];
-        found[(i, i)] = (up - 2.0 * middle + down) / (hi * hi);
-        for j in 0..i {
-            let hj = step(j);
-            let mut corner = |si: f64, sj: f64| {
-                x[i] = at[i] + si * hi;
-                x[j] = at[j] + sj * hj;
-                let value = f(&x);
-                x[i] = at[i];
-                x[j] = at[j];
-                value
-            };
-            let mixed = corner(1.0, 1.0) - corner(1.0, -1.0) - corner(-1.0, 1.0) + corner(-1.0, -1.0);
-            found[(i, j)] = mixed / (4.0 * hi * hj);
-            found[(j, i)] = found[(i, j)];
-        }
+        found.set_column(i, &((up - down) / (2.0 * h)));
     }
-    found
+    let turned = found.transpose();
+    (found + turned) * 0.5
 }
 
 /// The place of a minimum near `start`, by the quasi-Newton method of Broyden, Fletcher, Goldfarb and Shanno with halved steps
 /// (Nocedal and Wright 2006, chapter 6). The function is infinite where it is not defined. None where no descent ends.
-pub(super) fn minimum(f: &dyn Fn(&DVector<f64>) -> f64, start: DVector<f64>) -> Option<DVector<f64>> {
+pub(super) fn minimum(f: &Sloped<'_>, start: DVector<f64>) -> Option<DVector<f64>> {
     let n = start.len();
     let mut at = start;
-    let mut value = f(&at);
+    let (mut value, mut gradient) = f(&at);
     if !value.is_finite() {
         return None;
     }
     let mut inverse = DMatrix::identity(n, n) * 0.05;
-    let mut gradient = slope(f, &at);
     for turn in 0..500 {
         if gradient.amax() < 1e-7 {
             return Some(at);
@@ -76,16 +48,15 @@ pub(super) fn minimum(f: &dyn Fn(&DVector<f64>) -> f64, start: DVector<f64>) -> 
         let mut reached = None;
         for _ in 0..40 {
             let next = &at + &direction * length;
-            let there = f(&next);
+            let (there, after) = f(&next);
             if there <= value + 1e-4 * length * fall {
-                reached = Some((next, there));
+                reached = Some((next, there, after));
                 break;
             }
             length *= 0.5;
         }
         // Rounding hides a further fall: this is the minimum where the slope is small.
-        let Some((next, there)) = reached else { return (gradient.amax() < 1e-3).then_some(at) };
-        let after = slope(f, &next);
+        let Some((next, there, after)) = reached else { return (gradient.amax() < 1e-3).then_some(at) };
         let (moved, changed) = (&next - &at, &after - &gradient);
         let along = moved.dot(&changed);
         if along > 1e-14 {

@@ -102,7 +102,7 @@ pub fn ordinal(rows: &[(usize, f64, Vec<f64>)], random: bool) -> Result<Ordinal,
         return Err(NoValue::NoMaximum);
     }
     let thresholds = at.iter().take(cuts).copied().collect();
-    Ok(Ordinal { thresholds, terms, sigma, log_likelihood: -target(&at) })
+    Ok(Ordinal { thresholds, terms, sigma, log_likelihood: -target(&at).0 })
 }
 
 /// `1 / (1 + exp(−x))`, and 0 or 1 far out.
@@ -110,45 +110,61 @@ fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + libm::exp(-x))
 }
 
+/// A person's answer: level from 0, its lower and upper threshold less its fixed effects, and its columns of the design.
+struct Answer<'d> {
+    level: usize,
+    lower: f64,
+    upper: f64,
+    columns: &'d [f64],
+}
+
 impl Data<'_> {
-    fn minus_log_likelihood(&self, at: &DVector<f64>, random: bool) -> f64 {
-        let cuts = self.levels - 1;
-        if (1..cuts).any(|i| at[i] <= at[i - 1]) {
-            return f64::INFINITY;
+    /// Minus the log likelihood and its slope in thresholds, effects and `sigma`.
+    fn minus_log_likelihood(&self, at: &DVector<f64>, random: bool) -> (f64, DVector<f64>) {
+        let (cuts, at) = (self.levels - 1, at.as_slice());
+        let mut slope = DVector::zeros(at.len());
+        let cut = |level: usize| at.get(level).copied().unwrap_or(f64::INFINITY);
+        if (1..cuts).any(|level| cut(level) <= cut(level - 1)) {
+            return (f64::INFINITY, slope);
         }
-        let sigma = if random { at[cuts + self.columns] } else { 0.0 };
+        let sigma = if random { at.last().copied().unwrap_or(0.0) } else { 0.0 };
         let mut total = 0.0;
-        // Upper and lower threshold of each answer, less its fixed effects.
-        let mut ends: Vec<(f64, f64)> = Vec::new();
         for person in self.people.iter().filter(|person| !person.is_empty()) {
-            ends.clear();
-            ends.extend(person.iter().map(|(level, columns)| {
-                let eta: f64 = columns.iter().enumerate().map(|(i, x)| x * at[cuts + i]).sum();
-                let upper = if *level < cuts { at[*level] - eta } else { f64::INFINITY };
-                let lower = if *level > 0 { at[*level - 1] - eta } else { f64::NEG_INFINITY };
-                (lower, upper)
-            }));
-            let of = if random { self.integrated(&ends, sigma) } else { log_of(&ends, 0.0) };
+            let answers: Vec<Answer<'_>> = person
+                .iter()
+                .map(|(level, columns)| {
+                    let eta: f64 = columns.iter().zip(at.iter().skip(cuts)).map(|(x, effect)| x * effect).sum();
+                    let upper = if *level < cuts { cut(*level) - eta } else { f64::INFINITY };
+                    let lower = if *level > 0 { cut(*level - 1) - eta } else { f64::NEG_INFINITY };
+                    Answer { level: *level, lower, upper, columns }
+                })
+                .collect();
+            let of = if random {
+                self.integrated(&answers, sigma, &mut slope)
+            } else {
+                self.add_slope(&answers, (0.0, 0.0), 1.0, &mut slope);
+                log_of(&answers, 0.0)
+            };
             if !of.is_finite() {
-                return f64::INFINITY;
+                return (f64::INFINITY, slope);
             }
             total -= of;
         }
-        total
+        (total, -slope)
     }
 
-    /// Log of the integral of a person's likelihood over their intercept, which is `sigma` times a standard normal value.
-    fn integrated(&self, ends: &[(f64, f64)], sigma: f64) -> f64 {
+    /// Log of the integral of a person's likelihood over their intercept, which is `sigma` times a standard normal value `v`. The
+    /// slope is the mean of the slopes at the nodes, each by its share of the integral.
+    fn integrated(&self, answers: &[Answer<'_>], sigma: f64, slope: &mut DVector<f64>) -> f64 {
         let (mut mode, mut bend) = (0.0, 1.0);
         for _ in 0..50 {
             // Of log likelihood − v²/2: slope and bend in v.
             let (mut first, mut second) = (-mode, -1.0);
-            for (lower, upper) in ends {
-                let (a, b) = (logistic(upper - sigma * mode), logistic(lower - sigma * mode));
-                let (wa, wb) = (a * (1.0 - a), b * (1.0 - b));
+            for answer in answers {
+                let (a, b) = (logistic(answer.upper - sigma * mode), logistic(answer.lower - sigma * mode));
                 // d/dx log(F(u − x) − F(l − x)) = F(u − x) + F(l − x) − 1 for the logistic F.
                 first += sigma * (a + b - 1.0);
-                second -= sigma * sigma * (wa + wb);
+                second -= sigma * sigma * (a * (1.0 - a) + b * (1.0 - b));
             }
             bend = -second;
             let step = first / bend;
@@ -158,27 +174,57 @@ impl Data<'_> {
             }
         }
         let wide = libm::sqrt(2.0 / bend);
-        let logs: Vec<f64> = self
+        let nodes: Vec<(f64, f64)> = self
             .rule
             .iter()
             .map(|(x, w)| {
                 let v = mode + wide * x;
-                libm::log(*w) + x * x - 0.5 * v * v + log_of(ends, sigma * v)
+                (v, libm::log(*w) + x * x - 0.5 * v * v + log_of(answers, sigma * v))
             })
             .collect();
-        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = logs.iter().map(|one| libm::exp(one - most)).sum();
+        let most = nodes.iter().map(|(_, log)| *log).fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = nodes.iter().map(|(_, log)| libm::exp(log - most)).sum();
+        for (v, log) in &nodes {
+            self.add_slope(answers, (sigma, *v), libm::exp(log - most) / sum, slope);
+        }
         most + libm::log(sum) + libm::log(wide) - 0.5 * libm::log(2.0 * std::f64::consts::PI)
+    }
+
+    /// Adds the slope of a person's log likelihood at an intercept `sigma · v`, times its weight.
+    fn add_slope(&self, answers: &[Answer<'_>], (sigma, v): (f64, f64), weight: f64, slope: &mut DVector<f64>) {
+        let cuts = self.levels - 1;
+        let slope = slope.as_mut_slice();
+        let has_sigma = slope.len() > cuts + self.columns;
+        let mut add = |place: usize, value: f64| {
+            if let Some(cell) = slope.get_mut(place) {
+                *cell += weight * value;
+            }
+        };
+        for answer in answers {
+            let (upper, lower) = (answer.upper - sigma * v, answer.lower - sigma * v);
+            let (a, b) = (logistic(upper), logistic(lower));
+            let share = between(lower, upper);
+            if answer.level < cuts {
+                add(answer.level, a * (1.0 - a) / share);
+            }
+            if answer.level > 0 {
+                add(answer.level - 1, -b * (1.0 - b) / share);
+            }
+            let shift = a + b - 1.0;
+            answer.columns.iter().enumerate().for_each(|(column, x)| add(cuts + column, shift * x));
+            if has_sigma {
+                add(cuts + self.columns, shift * v);
+            }
+        }
     }
 }
 
+/// `F(upper) − F(lower)` of the logistic F, without cancellation far out.
+fn between(lower: f64, upper: f64) -> f64 {
+    if lower > 0.0 { logistic(-lower) - logistic(-upper) } else { logistic(upper) - logistic(lower) }
+}
+
 /// Log likelihood of a person's answers at an intercept.
-fn log_of(ends: &[(f64, f64)], intercept: f64) -> f64 {
-    let sum = |(lower, upper): &(f64, f64)| {
-        let (a, b) = (upper - intercept, lower - intercept);
-        // F(a) − F(b) without cancellation far out: both in the upper tail are taken as lower tails.
-        let share = if b > 0.0 { logistic(-b) - logistic(-a) } else { logistic(a) - logistic(b) };
-        libm::log(share)
-    };
-    ends.iter().map(sum).sum()
+fn log_of(answers: &[Answer<'_>], intercept: f64) -> f64 {
+    answers.iter().map(|one| libm::log(between(one.lower - intercept, one.upper - intercept))).sum()
 }
