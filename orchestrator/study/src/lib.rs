@@ -16,11 +16,19 @@ pub mod cell;
 pub mod design;
 pub mod exclude;
 pub mod instrument;
+pub mod page;
+pub mod plan;
 mod problem;
 pub mod rating;
 pub mod read;
 pub mod simulate;
 pub mod stats;
+pub mod words;
 
 pub use problem::Problem;
+
+/// The script in R that computes the figures again.
+pub const SCRIPT_R: &str = include_str!("../scripts/analysis.R");
+/// The same in Python.
+pub const SCRIPT_PYTHON: &str = include_str!("../scripts/analysis.py");
 pub use rating::Rating;

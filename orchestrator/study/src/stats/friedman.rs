@@ -31,6 +31,18 @@ pub struct Friedman {
 /// # Errors
 /// Fewer than two people or conditions; nobody made any difference.
 pub fn friedman(table: &DMatrix<f64>) -> Result<Friedman, NoValue> {
+    test(table, true)
+}
+
+/// The same by χ² alone.
+///
+/// # Errors
+/// As [`friedman`].
+pub fn friedman_by_chi2(table: &DMatrix<f64>) -> Result<Friedman, NoValue> {
+    test(table, false)
+}
+
+fn test(table: &DMatrix<f64>, count_out: bool) -> Result<Friedman, NoValue> {
     let (n, k) = table.shape();
     if n < 2 || k < 2 {
         return Err(NoValue::TooFew { what: "people or conditions", found: n.min(k), needed: 2 });
@@ -54,8 +66,8 @@ pub fn friedman(table: &DMatrix<f64>) -> Result<Friedman, NoValue> {
     let scale = 12.0 / (nf * kf * (kf + 1.0) * spread);
     let found = squares(&mut sums.iter().copied());
     let chi2 = scale * found;
-    let p_exact =
-        exact(&rows, &|state| squares(&mut state.iter().map(|twice| f64::from(*twice) / 2.0)) >= found - 1e-9);
+    let is_extreme = |state: &[i32]| squares(&mut state.iter().map(|twice| f64::from(*twice) / 2.0)) >= found - 1e-9;
+    let p_exact = if count_out { exact(&rows, &is_extreme) } else { None };
     Ok(Friedman { chi2, df: k - 1, p: dist::chi_upper(chi2, kf - 1.0), p_exact, w: chi2 / (nf * (kf - 1.0)) })
 }
 

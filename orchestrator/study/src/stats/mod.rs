@@ -21,7 +21,7 @@ mod wilcoxon;
 
 pub use agreement::{Level, krippendorff, weighted_kappa};
 pub use bootstrap::{Clustered, clustered_bca};
-pub use friedman::{Friedman, friedman};
+pub use friedman::{Friedman, friedman, friedman_by_chi2};
 pub use holm::holm;
 pub use mixed::{Balanced, balanced_mixed};
 pub use ordinal::{Ordinal, Term, ordinal};
