@@ -19,6 +19,38 @@ use crate::design::{Design, Dimension};
 use crate::problem::Problem;
 use crate::rating::{Participant, Rating, Ratings, Row};
 
+/// A format of answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Lines of JSON.
+    Own,
+    /// The CSV of jsPsych.
+    JsPsych,
+    /// The CSV of Qualtrics.
+    Qualtrics,
+}
+
+/// The format of a text.
+///
+/// # Errors
+/// It is none of those that are read.
+pub fn format_of(text: &str, file: &str) -> Result<Format, Problem> {
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    let head = text.lines().next().unwrap_or_default();
+    if text.starts_with('{') {
+        return Ok(Format::Own);
+    }
+    if head.split(',').any(|name| name.trim_matches('"') == "trial_type") {
+        return Ok(Format::JsPsych);
+    }
+    // Question texts of the second head line may hold line ends.
+    if text.get(..text.floor_char_boundary(2_000_000)).is_some_and(|begin| begin.contains("ImportId")) {
+        return Ok(Format::Qualtrics);
+    }
+    let hint = "lines of JSON, the CSV of Qualtrics with its three head lines, and the CSV of jsPsych are read; a table of ratings goes to `study analyze` as it is";
+    Err(Problem::new(file, "no format of answers that is known", hint).line(1).value(head))
+}
+
 /// Replaces the ids under which people came: a keyed hash, so that nobody without the key finds them again.
 #[derive(Debug, Clone, Copy)]
 pub struct Pseudonyms {

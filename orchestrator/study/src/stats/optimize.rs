@@ -56,7 +56,7 @@ pub(super) fn minimum(f: &Sloped<'_>, start: DVector<f64>) -> Option<DVector<f64
             length *= 0.5;
         }
         // Rounding hides a further fall: this is the minimum where the slope is small.
-        let Some((next, there, after)) = reached else { return (gradient.amax() < 1e-3).then_some(at) };
+        let Some((next, there, after)) = reached else { return (gradient.amax() < 1e-2).then_some(at) };
         let (moved, changed) = (&next - &at, &after - &gradient);
         let along = moved.dot(&changed);
         if along > 1e-14 {
@@ -69,8 +69,8 @@ pub(super) fn minimum(f: &Sloped<'_>, start: DVector<f64>) -> Option<DVector<f64
         let small = moved.amax() < 1e-10;
         (at, value, gradient) = (next, there, after);
         if small {
-            return (gradient.amax() < 1e-3).then_some(at);
+            return (gradient.amax() < 1e-2).then_some(at);
         }
     }
-    (gradient.amax() < 1e-3).then_some(at)
+    (gradient.amax() < 1e-2).then_some(at)
 }

@@ -2,14 +2,14 @@
 
 use nalgebra::DVector;
 
-use super::optimize::{curvature, minimum};
+use super::optimize::{Sloped, curvature, minimum};
 use super::quadrature::gauss_hermite;
 use super::{NoValue, dist, float};
 
 /// Nodes of the quadrature.
 const NODES: usize = 10;
-/// Most different answers; a mean of many items may have more, and is then too fine for this model.
-const MAX_LEVELS: usize = 40;
+/// Most different answers; a mean of very many items may have more, and is then too fine for this model.
+const MAX_LEVELS: usize = 120;
 
 /// An effect with its standard error and Wald's p.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,7 +60,11 @@ pub fn ordinal(rows: &[(usize, f64, Vec<f64>)], random: bool) -> Result<Ordinal,
         return Err(NoValue::Constant);
     }
     if answers.len() > MAX_LEVELS || rows.len() < answers.len() + 4 {
-        return Err(NoValue::TooFew { what: "ratings per level", found: rows.len(), needed: answers.len() + 4 });
+        return Err(NoValue::TooFew {
+            what: "scores for so many different values",
+            found: rows.len(),
+            needed: answers.len() + 4,
+        });
     }
     let people_count = rows.iter().map(|(person, _, _)| person + 1).max().unwrap_or(0);
     let mut people = vec![Vec::new(); people_count];
@@ -85,7 +89,9 @@ pub fn ordinal(rows: &[(usize, f64, Vec<f64>)], random: bool) -> Result<Ordinal,
     let start =
         DVector::from_fn(free, |i, _| start.get(i).copied().unwrap_or(if i < cuts + columns { 0.0 } else { 1.0 }));
     let target = |at: &DVector<f64>| data.minus_log_likelihood(at, random);
-    let at = minimum(&target, start).ok_or(NoValue::NoMaximum)?;
+    let found =
+        minimum(&|by_gaps| through_gaps(by_gaps, cuts, &target), gaps(&start, cuts)).ok_or(NoValue::NoMaximum)?;
+    let at = polished(&target, thresholds_of(&found, cuts));
     let sigma = if random { at[free - 1].abs() } else { 0.0 };
     // At a variance of 0 the likelihood is flat in it: errors are then those of the model without.
     let flat = random && sigma < 1e-3;
@@ -103,6 +109,58 @@ pub fn ordinal(rows: &[(usize, f64, Vec<f64>)], random: bool) -> Result<Ordinal,
     }
     let thresholds = at.iter().take(cuts).copied().collect();
     Ok(Ordinal { thresholds, terms, sigma, log_likelihood: -target(&at).0 })
+}
+
+/// Thresholds as the first of them and the logs of their distances, so that no step can put them out of order.
+fn gaps(at: &DVector<f64>, cuts: usize) -> DVector<f64> {
+    let mut found = at.clone();
+    let pairs = at.as_slice().windows(2).take(cuts - 1);
+    found.iter_mut().skip(1).zip(pairs).for_each(|(gap, pair)| {
+        if let [below, above] = pair {
+            *gap = libm::log(above - below);
+        }
+    });
+    found
+}
+
+/// The reverse of [`gaps`].
+fn thresholds_of(by_gaps: &DVector<f64>, cuts: usize) -> DVector<f64> {
+    let mut found = by_gaps.clone();
+    let mut last = by_gaps.iter().next().copied().unwrap_or(0.0);
+    found.iter_mut().take(cuts).skip(1).for_each(|gap| {
+        last += libm::exp(*gap);
+        *gap = last;
+    });
+    found
+}
+
+/// A function of thresholds, and its slope, in distances.
+fn through_gaps(by_gaps: &DVector<f64>, cuts: usize, of: &Sloped<'_>) -> (f64, DVector<f64>) {
+    let (value, mut slope) = of(&thresholds_of(by_gaps, cuts));
+    // A distance moves its own threshold and all above it.
+    let mut above = 0.0;
+    for (place, (slope, gap)) in
+        slope.iter_mut().zip(by_gaps.iter()).take(cuts).enumerate().collect::<Vec<_>>().into_iter().rev()
+    {
+        above += *slope;
+        *slope = if place == 0 { above } else { above * libm::exp(*gap) };
+    }
+    (value, slope)
+}
+
+/// Newton's steps at a minimum, as long as they lower the slope.
+fn polished(of: &Sloped<'_>, mut at: DVector<f64>) -> DVector<f64> {
+    for _ in 0..4 {
+        let slope = of(&at).1;
+        let Some(solved) = curvature(of, &at).cholesky() else { break };
+        let next = &at - solved.solve(&slope);
+        let (value, there) = of(&next);
+        if !value.is_finite() || there.amax() >= slope.amax() {
+            break;
+        }
+        at = next;
+    }
+    at
 }
 
 /// `1 / (1 + exp(−x))`, and 0 or 1 far out.
@@ -157,7 +215,9 @@ impl Data<'_> {
     /// slope is the mean of the slopes at the nodes, each by its share of the integral.
     fn integrated(&self, answers: &[Answer<'_>], sigma: f64, slope: &mut DVector<f64>) -> f64 {
         let (mut mode, mut bend) = (0.0, 1.0);
-        for _ in 0..50 {
+        // The slope falls everywhere: where a step overshoots, the interval that holds its zero is halved instead.
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for _ in 0..100 {
             // Of log likelihood − v²/2: slope and bend in v.
             let (mut first, mut second) = (-mode, -1.0);
             for answer in answers {
@@ -167,8 +227,19 @@ impl Data<'_> {
                 second -= sigma * sigma * (a * (1.0 - a) + b * (1.0 - b));
             }
             bend = -second;
-            let step = first / bend;
-            mode += step;
+            if first > 0.0 {
+                low = mode
+            } else {
+                high = mode
+            }
+            let next = mode + first / bend;
+            let next = if next > low && next < high || !(low.is_finite() && high.is_finite()) {
+                next
+            } else {
+                0.5 * (low + high)
+            };
+            let step = next - mode;
+            mode = next;
             if libm::fabs(step) < 1e-11 {
                 break;
             }

@@ -3,6 +3,7 @@
 
 mod formats;
 mod planted;
+mod reports;
 
 use socrates_study::design::Design;
 

@@ -41,6 +41,8 @@ fn planted_effects_and_planted_cheaters_are_named() {
         "reversed items are turned round: {:?}",
         cell.alpha
     );
+    // Means of items have dozens of different values, and people lie far from the middle: the model is fitted all the same.
+    assert!(results.cells.iter().all(|cell| cell.ordinal.is_ok()), "{:?}", results.cells);
     let never = analyze(&ratings, &design, Declared::Never);
     assert!(never.cells.iter().all(|cell| !cell.declared), "what was not registered is exploratory");
 }
@@ -50,7 +52,7 @@ fn where_nothing_was_planted_one_study_in_twenty_finds_something() {
     let mut design = design();
     design.resamples = 200;
     let mut alarms = 0;
-    for seed in 0..40 {
+    for seed in 0..12 {
         let simulated = simulate(&design, &Truth { seed, ..truth([0.0; 3], 0) });
         let ratings = own(&simulated.own(), "a.jsonl", &design, NAMES).unwrap();
         let results = analyze(&ratings, &design, Declared::Never);
@@ -60,6 +62,6 @@ fn where_nothing_was_planted_one_study_in_twenty_finds_something() {
             assert_eq!(analyze(&ratings, &design, Declared::Never), results, "same answers, same figures");
         }
     }
-    // Binomial of 40 studies at 5 %: more than 7 in 1 of 1400.
-    assert!(alarms <= 7, "{alarms} of 40 studies");
+    // Binomial of 12 studies at 5 %: more than 3 in 1 of 450.
+    assert!(alarms <= 3, "{alarms} of 12 studies");
 }
