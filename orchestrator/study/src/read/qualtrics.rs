@@ -256,6 +256,17 @@ fn line(
         let bad = || gather.bad(spot(name), cell, "no number of at least 0", "a number such as 12.5, or nothing");
         numbers.insert(kind, value.ok_or_else(bad)?);
     }
+    let mut shown: BTreeSet<&str> = numbers.keys().map(|(_, film)| *film).collect();
+    shown.extend(with.iter().filter_map(|(_, role, cell)| match role {
+        Role::Item { film, .. } if !cell.is_empty() => Some(film.as_str()),
+        Role::Item { .. }
+        | Role::Time { .. }
+        | Role::Watched { .. }
+        | Role::Position { .. }
+        | Role::Person
+        | Role::Order => None,
+        Role::Duration | Role::Finished | Role::Status | Role::Check(_) | Role::Ignored => None,
+    }));
     let person = gather.person(id);
     person.order = of(&Role::Order).map(|(_, cell)| cell.to_owned()).filter(|cell| !cell.is_empty());
     person.duration_s = numbers.get(&("duration", "")).copied();
@@ -269,6 +280,8 @@ fn line(
                 };
                 count_check(gather.person(id), cell.eq_ignore_ascii_case(&right));
             }
+            // A film that this person was not shown leaves all its columns empty.
+            Role::Item { film, .. } if !shown.contains(film.as_str()) => {}
             Role::Item { film, item } => {
                 let film = gather.film(film, spot(name))?;
                 gather.item(item, spot(name))?;
