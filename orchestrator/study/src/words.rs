@@ -12,7 +12,7 @@ fn many(count: usize, one: &str, more: &str) -> String {
 }
 
 /// The text to register: everything that the study file declares, in the order of common templates (data collected yet, hypotheses,
-/// variables, conditions, analyses, exclusions, sample size). It is made from the study alone.
+/// variables, conditions, tests, exclusions, sample size). It is made from the study alone.
 #[must_use]
 pub fn preregistration(design: &Design) -> String {
     let mut out = format!("# Preregistration: {}\n\n{DIGEST}{}\n\n", design.title, design.digest);
@@ -31,7 +31,7 @@ pub fn preregistration(design: &Design) -> String {
         out.push_str(&format!("- {}\n", measure(dimension)));
     }
     out.push_str(&format!("\n## Conditions\n\n{}\n", conditions(design)));
-    out.push_str(&format!("\n## Analyses\n\n{}\n", tests(design)));
+    out.push_str(&format!("\n## Tests\n\n{}\n", tests(design)));
     out.push_str("\nWhat no hypothesis above names is reported as exploratory.\n\n## Exclusions\n\n");
     for (rule, words) in exclude::declared(design) {
         out.push_str(&format!("- `{rule}`: people who {words}\n"));
@@ -104,10 +104,10 @@ fn sample(design: &Design) -> String {
 pub const fn standing(declared: Declared) -> &'static str {
     match declared {
         Declared::Before => {
-            "The study file is the one that was preregistered: analyses that a hypothesis names are confirmatory, all others exploratory."
+            "The study file is the one that was preregistered: tests that a hypothesis names are confirmatory, all others exploratory."
         }
-        Declared::Changed => "The study file differs from the preregistered one: all analyses are exploratory.",
-        Declared::Never => "No preregistration was given: all analyses are exploratory.",
+        Declared::Changed => "The study file differs from the preregistered one: all tests are exploratory.",
+        Declared::Never => "No preregistration was given: all tests are exploratory.",
     }
 }
 
