@@ -13,4 +13,5 @@ pub(crate) mod models;
 mod python;
 mod readers;
 mod strangers;
+mod studies;
 mod terminals;

@@ -15,6 +15,7 @@ const PURE: &[&str] = &[
     "workers/behavior_tree",
     "orchestrator",
     "orchestrator/experiment",
+    "orchestrator/study",
 ];
 
 /// What they never name: parts of paths.

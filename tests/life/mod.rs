@@ -34,6 +34,7 @@ mod series;
 mod slow_author;
 mod soundness;
 mod steering;
+pub(crate) mod studies;
 mod tables;
 mod training;
 

@@ -113,6 +113,7 @@ mod signals;
 mod stages;
 pub mod standing;
 pub mod steer;
+pub mod study;
 mod supervise;
 pub mod tokens;
 pub mod top;

@@ -21,6 +21,7 @@ mod scenarios;
 mod score;
 mod serve;
 mod simulate;
+mod study;
 mod top;
 mod video;
 mod view;
@@ -159,6 +160,8 @@ pub(crate) enum Verb {
     Experiment(experiment::Experiment),
     /// Make, put together, look through and check libraries of many scenarios.
     Library(library::Library),
+    /// Human studies: power, preregistration, answers of several survey programs, statistics and report.
+    Study(study::Study),
     /// List, show and rate the canonical scenarios of the catalog.
     Scenarios(scenarios::Scenarios),
     /// The same parts spread over machines.
@@ -220,6 +223,7 @@ impl Verb {
             Self::Evaluate(verb) => verb.act(talk, config).await,
             Self::Experiment(verb) => verb.act(talk, config).await,
             Self::Library(verb) => verb.act(talk, config).await,
+            Self::Study(verb) => verb.act(talk),
             Self::Scenarios(verb) => verb.act(talk).await,
             Self::Cluster(verb) => verb.act(talk, config).await,
             Self::Dev(verb) => verb.act(talk, config).await,

@@ -1,0 +1,89 @@
+# Computes the figures of results.csv again, from ratings.csv, with R; prints both and ends with status 1 where they differ.
+# Needs the packages ordinal, psych and BradleyTerry2.   Rscript analysis.R [FOLDER]
+suppressPackageStartupMessages({ library(ordinal); library(psych); library(BradleyTerry2) })
+folder <- commandArgs(trailingOnly = TRUE)
+folder <- if (length(folder) > 0) folder[[1]] else "."
+ratings <- read.csv(file.path(folder, "ratings.csv"), colClasses = c(participant = "character", film = "character"))
+ours <- read.csv(file.path(folder, "results.csv"), colClasses = c(which = "character"))
+planners <- readLines(file.path(folder, "planners.txt"))
+ratings <- ratings[ratings$excluded == 0, ]
+compared <- 0
+far <- 0
+check <- function(scenario, dimension, statistic, which, value, by) {
+  row <- ours[ours$scenario == scenario & ours$dimension == dimension & ours$statistic == statistic & ours$which == which, ]
+  if (nrow(row) == 0) return(invisible())
+  compared <<- compared + 1
+  bad <- !is.finite(value) || abs(value - row$value) > by * max(1, abs(value))
+  if (bad) far <<- far + 1
+  cat(sprintf("%-12s %-22s %-20s %-16s %14.8f %14.8f %s\n", scenario, dimension, statistic, which, row$value, value, if (bad) "DIFFERS" else ""))
+}
+cat(sprintf("%-12s %-22s %-20s %-16s %14s %14s\n", "scenario", "dimension", "statistic", "which", "SocRATES", "R"))
+for (scenario in unique(ours$scenario)) for (dimension in unique(ours$dimension[ours$scenario == scenario])) {
+  part <- ratings[ratings$scenario == scenario & ratings$dimension == dimension, ]
+  wide <- reshape(part[, c("participant", "film", "planner", "item", "score")], idvar = c("participant", "film", "planner"), timevar = "item", direction = "wide")
+  items <- as.matrix(wide[, -(1:3), drop = FALSE])
+  given <- rowSums(!is.na(items))
+  wide$mean <- ifelse(given > 0 & given * 2 >= ncol(items), rowMeans(items, na.rm = TRUE), NA)
+  whole <- items[complete.cases(items), , drop = FALSE]
+  scores <- aggregate(mean ~ participant + planner, data = wide[!is.na(wide$mean), ], FUN = mean)
+  shown <- planners[planners %in% scores$planner]
+  table <- sapply(shown, function(p) scores$mean[scores$planner == p][match(unique(scores$participant), scores$participant[scores$planner == p])])
+  table <- table[complete.cases(table), , drop = FALSE]
+  found <- friedman.test(table)
+  check(scenario, dimension, "friedman_chi2", "", unname(found$statistic), 1e-6)
+  check(scenario, dimension, "friedman_p", "", found$p.value, 1e-6)
+  check(scenario, dimension, "kendall_w", "", unname(found$statistic) / (nrow(table) * (ncol(table) - 1)), 1e-6)
+  for (j in seq_along(shown)) for (i in seq_len(j - 1)) {
+    d <- round(table[, j] - table[, i], 9)
+    kept <- d[d != 0]
+    exact <- length(kept) <= 25 && length(kept) == length(d) && !anyDuplicated(abs(d))
+    test <- suppressWarnings(wilcox.test(kept, exact = exact, correct = FALSE))
+    check(scenario, dimension, "wilcoxon_p_dropped", paste(shown[j], "-", shown[i]), test$p.value, 1e-6)
+  }
+  if (ncol(whole) > 1) check(scenario, dimension, "alpha", "", suppressWarnings(psych::alpha(as.data.frame(whole), warnings = FALSE))$total$raw_alpha, 1e-6)
+  if (ncol(whole) > 2) {
+    fit <- tryCatch(factanal(whole, 1, control = list(opt = list(factr = 1e2))), error = function(e) NULL)
+    if (!is.null(fit)) check(scenario, dimension, "omega", "", sum(fit$loadings)^2 / (sum(fit$loadings)^2 + sum(fit$uniquenesses)), 1e-4)
+  }
+  films <- reshape(wide[, c("participant", "film", "mean")], idvar = "participant", timevar = "film", direction = "wide")
+  films <- t(as.matrix(films[complete.cases(films), -1]))
+  if (ncol(films) > 1 && nrow(films) > 1) {
+    a <- anova(lm(as.vector(films) ~ factor(row(films)) + factor(col(films))))[["Mean Sq"]]
+    check(scenario, dimension, "icc_c1", "", (a[1] - a[3]) / (a[1] + (ncol(films) - 1) * a[3]), 1e-6)
+    check(scenario, dimension, "icc_ck", "", (a[1] - a[3]) / a[1], 1e-6)
+    if (ncol(films) <= 60) {
+      icc <- psych::ICC(films, lmer = FALSE)$results
+      check(scenario, dimension, "icc_c1", "", icc$ICC[3], 1e-6)
+      check(scenario, dimension, "icc_ck", "", icc$ICC[6], 1e-6)
+    }
+  }
+  if (all(dim(table) > 1)) {
+    long <- data.frame(y = as.vector(table), who = factor(rep(seq_len(nrow(table)), ncol(table))), planner = factor(rep(shown, each = nrow(table))))
+    f <- summary(aov(y ~ planner + Error(who), data = long))[["Error: Within"]][[1]][["F value"]][1]
+    within <- anova(lm(y ~ planner + who, data = long))[["Mean Sq"]]
+    if (within[2] > within[3]) check(scenario, dimension, "linear_f", "", f, 1e-6)
+  }
+  scores$y <- factor(round(scores$mean, 6), ordered = TRUE)
+  scores$planner <- factor(scores$planner, levels = shown)
+  scores$participant <- factor(scores$participant)
+  full <- tryCatch(clmm(y ~ planner + (1 | participant), data = scores, nAGQ = 10), error = function(e) NULL)
+  none <- tryCatch(clmm(y ~ 1 + (1 | participant), data = scores, nAGQ = 10), error = function(e) NULL)
+  if (!is.null(full) && !is.null(none)) {
+    at <- coef(summary(full))
+    for (p in shown[-1]) {
+      check(scenario, dimension, "clmm_effect", p, at[paste0("planner", p), "Estimate"], 1e-4)
+      check(scenario, dimension, "clmm_error", p, at[paste0("planner", p), "Std. Error"], 1e-4)
+    }
+    check(scenario, dimension, "clmm_sigma", "", sqrt(as.numeric(VarCorr(full)[[1]])), 1e-4)
+    check(scenario, dimension, "clmm_lr", "", 2 * (as.numeric(logLik(full)) - as.numeric(logLik(none))), 1e-4)
+  }
+  if (is.null(full) || is.null(none)) cat("clmm finds no maximum for", scenario, dimension, "and is not compared\n")
+  pairs <- combn(length(shown), 2)
+  wins <- data.frame(
+    first = factor(shown[pairs[1, ]], levels = shown), second = factor(shown[pairs[2, ]], levels = shown),
+    a = apply(pairs, 2, function(p) sum(table[, p[1]] > table[, p[2]] + 1e-9)), b = apply(pairs, 2, function(p) sum(table[, p[2]] > table[, p[1]] + 1e-9)))
+  fit <- tryCatch(BTm(cbind(a, b), first, second, data = wins, refcat = shown[1], br = FALSE), error = function(e) NULL, warning = function(w) NULL)
+  if (!is.null(fit)) for (p in shown[-1]) check(scenario, dimension, "bradley_terry", p, unname(coef(fit)[paste0("..", p)]), 1e-5)
+}
+cat(compared, "figures compared,", far, "differ\n")
+quit(status = if (far > 0 || compared == 0) 1 else 0)
