@@ -1,0 +1,10 @@
+//! Integration tests of the exporters.
+
+#[cfg(test)]
+mod graphs;
+#[cfg(test)]
+mod scenarios;
+#[cfg(test)]
+mod whole;
+#[cfg(test)]
+mod worlds;
