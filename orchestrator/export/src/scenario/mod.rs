@@ -10,6 +10,7 @@ mod boxes;
 mod content;
 mod eth_ucy;
 mod frames;
+mod hunav;
 mod jupedsim;
 mod map_files;
 mod outline;
@@ -112,8 +113,18 @@ pub struct Format {
 }
 
 /// Every format, in the order of the documents.
-pub const FORMATS: &[Format] =
-    &[trajnet::FORMAT, eth_ucy::FORMAT, pedpy::FORMAT, jupedsim::FORMAT, socnav3::FORMAT, sdf::FORMAT];
+pub const FORMATS: &[Format] = &[
+    trajnet::FORMAT,
+    eth_ucy::FORMAT,
+    pedpy::FORMAT,
+    jupedsim::FORMAT,
+    socnav3::FORMAT,
+    sdf::FORMAT,
+    hunav::HUNAV_1_0,
+    hunav::HUNAV_1_1,
+    hunav::HUNAV_2_0,
+    hunav::HUNAV_FORK,
+];
 
 impl Scenario {
     /// Radius of the robot's disc in the run, or of its model where there is none, m.
@@ -170,6 +181,21 @@ impl Format {
     #[must_use]
     pub fn carries(&self, content: Content) -> bool {
         !self.lacks.iter().any(|(lacked, _)| *lacked == content)
+    }
+
+    /// The row of the table in `docs/export.md`.
+    #[must_use]
+    pub fn row(&self) -> String {
+        let carried: Vec<&str> =
+            Content::ALL.into_iter().filter(|content| self.carries(*content)).map(Content::name).collect();
+        format!(
+            "| `{}` | {} | {} | {} | {} |",
+            self.name,
+            self.about,
+            carried.join(", "),
+            self.foreign.name(),
+            self.checked_by
+        )
     }
 
     /// Writes a scenario; the same scenario gives the same files.

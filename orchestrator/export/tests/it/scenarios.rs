@@ -210,3 +210,12 @@ fn people_who_are_not_there_have_no_rows() {
     assert!(!text(&package, ".txt").lines().any(|line| line.starts_with("0\t")));
     assert!(scenario.recording.unwrap().header.agents.iter().all(|info| info.agent != AgentId::Robot));
 }
+
+/// The table of the page is that of the program.
+#[test]
+fn the_page_has_the_table_of_formats() {
+    let page = std::fs::read_to_string(socrates_tests::root().join("docs/export.md")).unwrap();
+    let told: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    let rows: Vec<String> = FORMATS.iter().map(Format::row).collect();
+    assert_eq!(told, rows, "docs/export.md should have these rows:\n{}", rows.join("\n"));
+}

@@ -60,7 +60,7 @@ pub(super) const FORMAT: Format = Format {
 fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
     let name = file_name(&scenario.name, losses);
     let mut world = World { text: String::new(), turn: scenario.location.grid.origin.yaw };
-    world.begin(&name);
+    world.begin(&name, "1.6");
     world.walls(&walls(scenario, f64::INFINITY)?);
     for door in &scenario.location.doors {
         world.door(door, scenario);
@@ -151,15 +151,15 @@ pub(super) struct World {
 
 impl World {
     /// Adds lines; writing to a String cannot fail.
-    fn add(&mut self, text: std::fmt::Arguments<'_>) {
+    pub(super) fn add(&mut self, text: std::fmt::Arguments<'_>) {
         let (Ok(()) | Err(std::fmt::Error)) = self.text.write_fmt(text);
     }
 
     /// What every world begins with.
-    pub(super) fn begin(&mut self, name: &str) {
+    pub(super) fn begin(&mut self, name: &str, version: &str) {
         self.add(format_args!(
             r#"<?xml version="1.0"?>
-<sdf version="1.6">
+<sdf version="{version}">
   <world name="{name}">
     <gravity>0 0 -9.8</gravity>
     <magnetic_field>6e-06 2.3e-05 -4.2e-05</magnetic_field>
@@ -276,6 +276,7 @@ impl World {
       <pose>{x} {y} {z} 0.0 0.0 0.0</pose>
       <diffuse>0.6 0.6 0.5 1.0</diffuse>
       <specular>0.1 0.1 0.1 1.0</specular>
+      <direction>0 0 -1</direction>
       <attenuation><range>4.0</range><constant>0.5</constant><linear>0.1</linear><quadratic>0.01</quadratic></attenuation>
     </light>
 "#
