@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod graphs;
 #[cfg(test)]
+mod kits;
+#[cfg(test)]
 mod scenarios;
 #[cfg(test)]
 mod whole;
