@@ -22,11 +22,14 @@ fn kit(format: &str, scenario: &Scenario) -> Package {
 }
 
 fn texts(package: &Package) -> BTreeMap<&str, &str> {
-    let text = |(name, file)| match file {
-        File::Text(text) => Some((name, text.as_str())),
-        File::Bytes(_) | File::Database(_) => None,
-    };
-    package.files.iter().map(|(name, file)| (name.as_str(), file)).filter_map(text).collect()
+    let mut texts = BTreeMap::new();
+    for (name, file) in &package.files {
+        match file {
+            File::Text(text) => _ = texts.insert(name.as_str(), text.as_str()),
+            File::Bytes(_) | File::Database(_) => {}
+        }
+    }
+    texts
 }
 
 fn agents(package: &Package) -> AgentsFile {
