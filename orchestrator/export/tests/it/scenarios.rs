@@ -117,7 +117,10 @@ fn eth_ucy_numbers_frames_in_tens_and_keeps_positions() {
     let package = export("eth-ucy");
     let rows: Vec<Vec<f64>> =
         text(&package, ".txt").lines().map(|line| line.split('\t').map(|n| n.parse().unwrap()).collect()).collect();
-    let row = rows.iter().find(|row| row[0] == 100.0 && row[1] == 1.0).unwrap();
+    let row = rows
+        .iter()
+        .find(|row| row[0].to_bits() == 100.0_f64.to_bits() && row[1].to_bits() == 1.0_f64.to_bits())
+        .unwrap();
     assert!((row[2] - 7.8).abs() < 1e-6 && (row[3] - 2.5).abs() < 1e-6, "{row:?}");
     assert!(text(&package, ".txt").lines().all(|line| line.split('\t').all(|number| number.contains('.'))));
     assert_eq!(rows.len(), 51 * 2 + 43);
