@@ -16,14 +16,19 @@ const READERS: [&str; 4] = ["jupedsim==1.4.2", "pedpy==1.5.1", "trajnetplusplust
 /// What they find, beside the table of the run.
 const TRACKS: &str = include_str!("exports/tracks.py");
 /// Formats of tracks that are read by [`TRACKS`], with the largest distance from the run, m: half a digit and that of the table.
-const TRACK_FORMATS: [(&str, f64); 4] = [("trajnet", 0.0072), ("eth-ucy", 0.000_1), ("pedpy", 0.000_1), ("jupedsim-2", 0.000_1)];
+const TRACK_FORMATS: [(&str, f64); 4] =
+    [("trajnet", 0.0072), ("eth-ucy", 0.000_1), ("pedpy", 0.000_1), ("jupedsim-2", 0.000_1)];
 /// Formats of worlds that are read by [`SDF_MAIN`].
 const WORLD_FORMATS: [&str; 1] = ["sdf-1.6"];
 
 /// Exports a bundle into a folder named after the format.
 fn export(at: &Path, bundle: &str, format: &str) -> Value {
     let out = format!("out/{format}");
-    let made = socrates(at, &format!("export-{format}"), &["--format", "json", "export", bundle, "--to", format, "--out", &out]);
+    let made = socrates(
+        at,
+        &format!("export-{format}"),
+        &["--format", "json", "export", bundle, "--to", format, "--out", &out],
+    );
     assert_eq!(made.code, 0, "{format}: {}", made.err);
     let list: Value = serde_json::from_slice(&std::fs::read(at.join(&out).join("not_carried.json")).unwrap()).unwrap();
     assert_eq!(list["format"], format, "{list}");
@@ -44,7 +49,8 @@ fn the_formats_that_the_page_calls_parsed_are_those_that_are_read_here() {
 
 #[test]
 fn readers_of_tracks_find_the_positions_of_the_run() {
-    let python = skip::installed(python("export-readers", &READERS, "import jupedsim, pedpy, shapely, trajnetplusplustools"));
+    let python =
+        skip::installed(python("export-readers", &READERS, "import jupedsim, pedpy, shapely, trajnetplusplustools"));
     let Some(python) = python else { return };
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -63,7 +69,10 @@ fn readers_of_tracks_find_the_positions_of_the_run() {
         assert!(positions > 100 && off <= most_m, "{format}: {found}");
     }
     assert_eq!(found["pedpy"]["inside"], true, "{found}");
-    assert!(found["trajnet"]["scenes"].as_u64().unwrap() > 0 && found["jupedsim-2"]["area"].as_f64().unwrap() > 10.0, "{found}");
+    assert!(
+        found["trajnet"]["scenes"].as_u64().unwrap() > 0 && found["jupedsim-2"]["area"].as_f64().unwrap() > 10.0,
+        "{found}"
+    );
 }
 
 /// A program around a reader of SDF that others wrote: what it finds in each file, a line each.
@@ -114,20 +123,27 @@ fn sdf_reader() -> Result<PathBuf, String> {
 
 /// Bundles in locations with and without doors, and the world of each.
 fn worlds(at: &Path) -> Vec<(PathBuf, Value)> {
-    let requests = ["warehouse", "hospital", "office"].map(|location| (location, WAREHOUSE.replace("warehouse", location)));
+    let requests =
+        ["warehouse", "hospital", "office"].map(|location| (location, WAREHOUSE.replace("warehouse", location)));
     let mut made = Vec::new();
     for (location, request) in requests {
         let request = if location == "warehouse" {
             request
         } else {
-            format!("location = \"{location}\"\nsocial_context = \"A morning\"\ntask = \"Deliver a parcel\"\nrough_scenario = \"One person walks towards the robot.\"\n")
+            format!(
+                "location = \"{location}\"\nsocial_context = \"A morning\"\ntask = \"Deliver a parcel\"\nrough_scenario = \"One person walks towards the robot.\"\n"
+            )
         };
         let (run, _) = make(at, location, &request, &[]);
         assert!(matches!(run.code, 0 | 3), "{location}: {}", run.err);
         for format in WORLD_FORMATS {
             let bundle = format!("bundle-{location}");
             let out = format!("worlds/{location}-{format}");
-            let told = socrates(at, &out.replace('/', "-"), &["--format", "json", "export", &bundle, "--to", format, "--out", &out]);
+            let told = socrates(
+                at,
+                &out.replace('/', "-"),
+                &["--format", "json", "export", &bundle, "--to", format, "--out", &out],
+            );
             assert_eq!(told.code, 0, "{location}: {}", told.err);
             let files = told.json()["files"].as_array().unwrap().clone();
             let world = files.iter().filter_map(Value::as_str).find(|name| name.ends_with(".world")).unwrap();
@@ -174,7 +190,11 @@ print(ctypes.CDLL("libsdformat12.so.12").cmdCheck(sys.argv[1].encode()))
 #[test]
 fn the_library_of_gazebo_calls_the_worlds_valid() {
     let check = |file: &str| {
-        Command::new("python3").args(["-c", CMD_CHECK, file]).stdin(Stdio::null()).output().map_err(|why| why.to_string())
+        Command::new("python3")
+            .args(["-c", CMD_CHECK, file])
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|why| why.to_string())
     };
     let there = Command::new("python3")
         .args(["-c", "import ctypes; ctypes.CDLL('libsdformat12.so.12')"])

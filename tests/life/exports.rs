@@ -63,7 +63,19 @@ fn a_library_of_packed_bundles_has_a_folder_for_each_and_names_those_that_cannot
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("hall.toml"), WAREHOUSE).unwrap();
-    let args = ["run", "hall.toml", "--variants", "2", "--repeats", "--require", "any", "--keep", "packed", "--out", "library"];
+    let args = [
+        "run",
+        "hall.toml",
+        "--variants",
+        "2",
+        "--repeats",
+        "--require",
+        "any",
+        "--keep",
+        "packed",
+        "--out",
+        "library",
+    ];
     let made = socrates(at, "made", &args);
     assert_eq!(made.code, 0, "{}", made.err);
     let told = socrates(at, "told", &["--format", "json", "export", "library", "--to", "trajnet", "--out", "out"]);
