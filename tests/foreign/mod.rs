@@ -6,6 +6,7 @@ mod consoles;
 mod deploy;
 mod drivers;
 mod editors;
+mod exports;
 mod graphs;
 mod live;
 mod looks;

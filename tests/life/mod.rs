@@ -12,6 +12,7 @@ mod coverage;
 mod doors;
 mod evaluations;
 mod experiments;
+mod exports;
 mod folders;
 mod judges;
 mod kept;

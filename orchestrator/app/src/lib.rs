@@ -51,6 +51,7 @@ pub mod experiment;
 pub mod explain;
 pub mod explain_job;
 pub mod export_chat;
+pub mod exports;
 pub mod figure;
 mod files;
 mod folder;

@@ -10,6 +10,7 @@ mod drive;
 mod evaluate;
 mod experiment;
 mod explain;
+mod export;
 mod fsck;
 mod keys;
 mod library;
@@ -121,6 +122,8 @@ pub(crate) enum Verb {
     Cite(bundle::Cite),
     /// Add up what the authors of bundles were asked, in calls, tokens and money.
     Cost(bundle::Cost),
+    /// Write bundles in formats of other simulators and data sets, with a list of what each cannot hold.
+    Export(export::Export),
     /// Let people label runs by hand.
     Labels(library::Labels),
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
@@ -205,6 +208,7 @@ impl Verb {
             Self::Figure(verb) => verb.act(talk),
             Self::Cite(verb) => verb.act(talk),
             Self::Cost(verb) => verb.act(talk, config),
+            Self::Export(verb) => verb.act(talk),
             Self::Labels(verb) => verb.act(talk),
             Self::Simulate(verb) => verb.act(talk),
             Self::Score(verb) => verb.act(talk),

@@ -5,7 +5,6 @@
 //! upward (`cartesian_meters`) or pixels downward (`reference_image`, whose scale is that of its measurements).
 
 mod floor;
-mod outline;
 mod read;
 mod write;
 

@@ -7,8 +7,8 @@ use socrates_model::{Cell, DoorKind, Location, NodeId, Point};
 
 use crate::graph::{crossed, door_rule, micro};
 use crate::not_carried::Losses;
+use crate::outline::{STRAIGHT, outlines};
 
-use super::outline::outlines;
 use super::{BEND, KIND, LEVEL, NAMES, TYPE};
 
 /// The value of a parameter, written with the number of its type.
@@ -171,7 +171,7 @@ fn walls(location: &Location, level: &mut Level) {
     #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
     let at = |(column, row): (usize, usize)| grid.world_from_pixel(column as f64, row as f64);
     let text = |text: &str| Value::Text(text.to_owned());
-    for line in outlines(grid.width, grid.height, |column, row| grid.at(column, row) == Cell::Free) {
+    for line in outlines(grid.width, grid.height, STRAIGHT, |column, row| grid.at(column, row) == Cell::Free) {
         let corners: Vec<usize> = line.iter().map(|corner| level.vertex(&at(*corner), "", Parameters::new())).collect();
         for (place, from) in corners.iter().enumerate() {
             let Some(to) = corners.get((place + 1) % corners.len()) else { continue };
@@ -181,7 +181,7 @@ fn walls(location: &Location, level: &mut Level) {
     }
     let known = |column: usize, row: usize| grid.at(column, row) != Cell::Unknown;
     // Outer outlines alone turn the same way as the first; holes of unknown floor are bounded by their walls.
-    for line in outlines(grid.width, grid.height, known).into_iter().filter(|line| turns_right(line)) {
+    for line in outlines(grid.width, grid.height, STRAIGHT, known).into_iter().filter(|line| turns_right(line)) {
         let vertices = line.iter().map(|corner| level.vertex(&at(*corner), "", Parameters::new())).collect();
         let parameters = Parameters::from([
             ("texture_name", text("default")),

@@ -3,13 +3,21 @@
 use std::collections::BTreeMap;
 
 /// A corner of cells: column and row of the cell to its lower right.
-type Corner = (usize, usize);
+pub(crate) type Corner = (usize, usize);
 
-/// Largest distance of a corner from the line that stands for it, cells: stairs of slanted walls become straight.
-const SLACK: f64 = 0.8;
+/// Slack that makes stairs of slanted walls straight lines, cells.
+pub(crate) const STRAIGHT: f64 = 0.8;
+/// Slack that keeps every corner of the cells.
+pub(crate) const EXACT: f64 = 0.0;
 
 /// Closed outlines of the cells for which `inside` holds, each without its first corner again, by their first corners.
-pub(super) fn outlines(width: usize, height: usize, inside: impl Fn(usize, usize) -> bool) -> Vec<Vec<Corner>> {
+/// A corner lies at most `slack` cells off the line that stands for it.
+pub(crate) fn outlines(
+    width: usize,
+    height: usize,
+    slack: f64,
+    inside: impl Fn(usize, usize) -> bool,
+) -> Vec<Vec<Corner>> {
     let is = |column: Option<usize>, row: Option<usize>| match (column, row) {
         (Some(column), Some(row)) => column < width && row < height && inside(column, row),
         _ => false,
@@ -44,7 +52,7 @@ pub(super) fn outlines(width: usize, height: usize, inside: impl Fn(usize, usize
             line.push(next);
             here = next;
         }
-        out.push(straightened(&line));
+        out.push(straightened(&line, slack));
     }
     out
 }
@@ -73,7 +81,7 @@ fn bend(a: Corner, b: Corner, c: Corner) -> f64 {
 }
 
 /// A closed line with the corners that matter alone.
-fn straightened(line: &[Corner]) -> Vec<Corner> {
+fn straightened(line: &[Corner], slack: f64) -> Vec<Corner> {
     let count = line.len();
     let at = |place: usize| line.get(place % count).copied().unwrap_or_default();
     // Corners at which the direction changes; the first is one of them, since outlines begin at their least corner.
@@ -88,8 +96,8 @@ fn straightened(line: &[Corner]) -> Vec<Corner> {
         .map_or(0, |(place, _)| place + 1);
     let ring: Vec<Corner> = corners.iter().copied().chain([*first]).collect();
     let mut kept = vec![*first];
-    thinned(ring.get(..=far).unwrap_or_default(), &mut kept);
-    thinned(ring.get(far..).unwrap_or_default(), &mut kept);
+    thinned(ring.get(..=far).unwrap_or_default(), slack, &mut kept);
+    thinned(ring.get(far..).unwrap_or_default(), slack, &mut kept);
     kept.pop();
     kept
 }
@@ -100,7 +108,7 @@ fn gap(a: Corner, b: Corner) -> f64 {
 }
 
 /// Adds the corners of a line behind its first that keep all others within the slack (Douglas and Peucker).
-fn thinned(line: &[Corner], kept: &mut Vec<Corner>) {
+fn thinned(line: &[Corner], slack: f64, kept: &mut Vec<Corner>) {
     let (Some(first), Some(last)) = (line.first(), line.last()) else { return };
     let length = gap(*first, *last);
     let off = |corner: &Corner| {
@@ -108,10 +116,10 @@ fn thinned(line: &[Corner], kept: &mut Vec<Corner>) {
     };
     let inner = line.get(1..line.len().saturating_sub(1)).unwrap_or_default();
     let worst = inner.iter().enumerate().max_by(|a, b| off(a.1).total_cmp(&off(b.1)));
-    match worst.filter(|(_, corner)| off(corner) > SLACK) {
+    match worst.filter(|(_, corner)| off(corner) > slack) {
         Some((place, _)) => {
-            thinned(line.get(..=place + 1).unwrap_or_default(), kept);
-            thinned(line.get(place + 1..).unwrap_or_default(), kept);
+            thinned(line.get(..=place + 1).unwrap_or_default(), slack, kept);
+            thinned(line.get(place + 1..).unwrap_or_default(), slack, kept);
         }
         None => kept.push(*last),
     }
@@ -126,14 +134,15 @@ mod tests {
         let rows = ["......", ".####.", ".#..#.", ".####.", "......"];
         let inside = |column: usize, row: usize| rows[row].as_bytes()[column] == b'#';
         assert_eq!(
-            outlines(6, 5, inside),
+            outlines(6, 5, STRAIGHT, inside),
             [vec![(1, 1), (5, 1), (5, 4), (1, 4)], vec![(2, 2), (2, 3), (4, 3), (4, 2)]]
         );
         let stairs = |column: usize, row: usize| column <= row;
-        assert_eq!(outlines(9, 9, stairs).len(), 1);
-        assert!(outlines(9, 9, stairs)[0].len() <= 5, "{:?}", outlines(9, 9, stairs));
+        assert_eq!(outlines(9, 9, STRAIGHT, stairs).len(), 1);
+        assert!(outlines(9, 9, STRAIGHT, stairs)[0].len() <= 5, "{:?}", outlines(9, 9, STRAIGHT, stairs));
+        assert_eq!(outlines(9, 9, EXACT, stairs)[0].len(), 20);
         // Cells that touch at a corner are two outlines.
-        assert_eq!(outlines(2, 2, |column, row| column == row).len(), 2);
-        assert!(outlines(3, 3, |_, _| false).is_empty());
+        assert_eq!(outlines(2, 2, STRAIGHT, |column, row| column == row).len(), 2);
+        assert!(outlines(3, 3, STRAIGHT, |_, _| false).is_empty());
     }
 }

@@ -1,0 +1,12 @@
+//! Integration tests of the exporters.
+
+#[cfg(test)]
+mod graphs;
+#[cfg(test)]
+mod kits;
+#[cfg(test)]
+mod scenarios;
+#[cfg(test)]
+mod whole;
+#[cfg(test)]
+mod worlds;
