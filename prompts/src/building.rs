@@ -95,11 +95,10 @@ pub fn schema() -> Value {
 pub fn read(answer: &str) -> Result<Briefed, Vec<String>> {
     let mut value =
         json::object(answer).map_err(|faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-    let left_out = value.as_object_mut().and_then(|members| members.remove("left_out")).unwrap_or(Value::Null);
-    let left_out = match left_out {
-        Value::Null => Vec::new(),
-        listed => serde_json::from_value(listed).map_err(|why| vec![format!("left_out: {why}")])?,
-    };
+    let left_out = value.as_object_mut().and_then(|members| members.remove("left_out"));
+    let left_out: Option<Vec<String>> =
+        left_out.map(serde_json::from_value).transpose().map_err(|why| vec![format!("left_out: {why}")])?.flatten();
+    let left_out = left_out.unwrap_or_default();
     let brief: BuildingBrief = serde_json::from_value(value).map_err(|why| vec![why.to_string()])?;
     let problems = brief.problems();
     if problems.is_empty() {

@@ -12,10 +12,9 @@ use crate::life::studies::{STUDY, does};
 /// R with the packages that the script needs.
 fn r() -> Result<PathBuf, String> {
     let r = skip::program("Rscript").ok_or("there is no `Rscript`; `./gate --foreign` installs r-base-core")?;
-    let asked =
-        Command::new(&r).args(["-e", "library(ordinal); library(psych); library(BradleyTerry2)"]).stdout(Stdio::null());
-    let mut asked = asked;
-    let asked = asked.stderr(Stdio::null()).status();
+    let mut asked = Command::new(&r);
+    asked.args(["-e", "library(ordinal); library(psych); library(BradleyTerry2)"]);
+    let asked = asked.stdout(Stdio::null()).stderr(Stdio::null()).status();
     let has = asked.is_ok_and(|status| status.success());
     if has { Ok(r) } else { Err("R lacks ordinal, psych or BradleyTerry2 (Debian: r-cran-*)".to_owned()) }
 }

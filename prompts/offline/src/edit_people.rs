@@ -91,7 +91,7 @@ fn person(human: &HumanProposal) -> Person {
     let known = |word: &&str| plain(word) || lexicon().roles.contains_key(*word);
     let words = || human.role.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
     let whole = lexicon().roles.contains_key(&human.role);
-    let noun = if whole { None } else { words().filter(known).last() };
+    let noun = if whole { None } else { words().rfind(known) };
     let role = if human.role == "person" { "" } else { noun.unwrap_or(&human.role) }.to_owned();
     Person { role, group: human.group, bound: true, ..Person::default() }
 }
