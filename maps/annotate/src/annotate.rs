@@ -32,6 +32,8 @@ const FLOOR_SHARE: f64 = 0.3;
 const NAMED_M2: f64 = 4.0;
 /// At most so many places of one kind are named one by one.
 const NAMED_MOST: usize = 6;
+/// Shortest way of a robot that is accepted, m.
+const LEAST_WAY_M: f64 = 6.0;
 /// Doors less sure than this are named.
 const DOUBTFUL: f64 = 0.68;
 /// Points in the map frame must lie this near to floor, m.
@@ -445,6 +447,13 @@ fn doubts(floor: &Floor, regions: &Regions, made: &Annotation, remarks: &mut Vec
         let at = largest.map(|region| roomiest(floor, region));
         let text = "the map is one floor without doorways and rooms: what needs a door, a room or an elevator has no place here".to_owned();
         remarks.push(Remark::new(RemarkKind::OneFloor, at, text));
+    }
+    let all_m: f64 = made.graph.edges().iter().filter_map(|edge| made.graph.edge_length_m(&edge.from, &edge.to)).sum();
+    if all_m < LEAST_WAY_M {
+        let text = format!(
+            "all ways together are {all_m:.1} m long; the robot's way alone has at least {LEAST_WAY_M} m, so nothing can be played here"
+        );
+        remarks.push(Remark::new(RemarkKind::Small, None, text));
     }
 }
 

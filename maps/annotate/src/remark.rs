@@ -32,6 +32,8 @@ pub enum RemarkKind {
     OneFloor,
     /// A place that no edge reaches with the robot's radius.
     Unreached,
+    /// All ways together are too short for any scenario.
+    Small,
 }
 
 impl RemarkKind {
@@ -50,6 +52,7 @@ impl RemarkKind {
             Self::Doubtful => "doubtful",
             Self::OneFloor => "one_floor",
             Self::Unreached => "unreached",
+            Self::Small => "small",
         }
     }
 }

@@ -276,6 +276,9 @@ mod annotation {
         let made = found(&drawn(120, 120, 0.05, |_, _| None));
         assert!(kinds_of(&made).contains(&RemarkKind::OneFloor), "{:?}", made.remarks);
         assert!(!made.graph.nodes().is_empty());
+        assert!(!kinds_of(&found(&drawn(300, 120, 0.05, |_, _| None))).contains(&RemarkKind::Small));
+        let small = found(&drawn(60, 50, 0.05, |_, _| None));
+        assert!(kinds_of(&small).contains(&RemarkKind::Small), "{:?}", small.remarks);
     }
 
     #[test]
