@@ -12,7 +12,7 @@ use socrates_model::{Fault, Location, Point};
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
-use crate::prepare::load_location;
+use crate::prepare::{load_location, shadowed};
 use crate::raw_map;
 use crate::words::plural;
 
@@ -34,8 +34,16 @@ pub fn list(talk: &Printer) -> Result<(), Complaint> {
     Ok(())
 }
 
+/// Says that a shipped location is meant and not a folder of its name.
+fn told_shadow(talk: &Printer, name: &str) {
+    if let Some(note) = shadowed(name, Path::new(".")) {
+        talk.line(&format!("note       {note}"));
+    }
+}
+
 /// Says everything that is wrong with a location.
 pub fn check(talk: &Printer, name: &str) -> Result<(), Complaint> {
+    told_shadow(talk, name);
     let (location, _) = load_location(name, Path::new("."))?;
     let faults = socrates_maps::check(&location);
     let (hard, soft): (Vec<_>, Vec<_>) = faults.into_iter().partition(|fault| !fault.is_soft());
@@ -164,7 +172,10 @@ fn point(option: &str, text: &str) -> Result<Point, Complaint> {
 
 /// Says how near the second annotation of a map comes to the first.
 pub fn score(talk: &Printer, first: &str, second: &str) -> Result<(), Complaint> {
-    let load = |name: &str| load_location(name, Path::new(".")).map(|(location, _)| location);
+    let load = |name: &str| {
+        told_shadow(talk, name);
+        load_location(name, Path::new(".")).map(|(location, _)| location)
+    };
     let score = socrates_annotate::score::score(&load(first)?, &load(second)?);
     let rows = [
         ("nodes, 1.0 m", score.nodes),
@@ -292,6 +303,17 @@ mod tests {
         let castle = random(&talk, 7, "castle", Some(&folder.path().join("castle-7"))).unwrap_err();
         assert!(castle.short().contains("`castle`") && castle.short().contains("warehouse"), "{}", castle.short());
         assert!(!folder.path().join("castle-7").exists());
+    }
+
+    #[test]
+    fn a_folder_that_has_the_name_of_a_shipped_location_is_told_of() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(shadowed("office", folder.path()), None);
+        std::fs::create_dir(folder.path().join("office")).unwrap();
+        assert_eq!(shadowed("office", folder.path()), None, "no map is in it");
+        std::fs::write(folder.path().join("office/map.yaml"), "").unwrap();
+        assert!(shadowed("office", folder.path()).is_some_and(|note| note.contains("`./office` is the folder here")));
+        assert_eq!(shadowed("./office", folder.path()), None);
     }
 
     #[test]

@@ -353,7 +353,13 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
     load_any(name, folder).map(|(location, files, _)| (location, files))
 }
 
-/// A location with its files, and what is to be said of it where the program annotated it.
+/// What is said where a shipped location has the name of a folder with a map: the shipped one is meant.
+pub(crate) fn shadowed(name: &str, folder: &Path) -> Option<String> {
+    let there = socrates_maps::shipped::files(name).is_some() && folder.join(name).join("map.yaml").is_file();
+    there.then(|| format!("`{name}` is the location of that name that is shipped; `./{name}` is the folder here"))
+}
+
+/// A location with its files, and what is to be said of it where the program annotated it, or a folder has its name.
 type Loaded = (Location, BTreeMap<String, Vec<u8>>, Option<String>);
 
 /// A location by shipped name, folder or map file.
@@ -370,7 +376,7 @@ fn load_any(name: &str, folder: &Path) -> Result<Loaded, Complaint> {
         )
     };
     if let Some(files) = socrates_maps::shipped::files(name) {
-        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files, None));
+        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files, shadowed(name, folder)));
     }
     let beside = folder.join(name);
     let dir = if beside.exists() { beside } else { PathBuf::from(name) };
