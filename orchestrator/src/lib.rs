@@ -47,6 +47,8 @@ mod why;
 #[cfg(test)]
 mod batch_rules;
 #[cfg(test)]
+mod best_rules;
+#[cfg(test)]
 mod broken;
 #[cfg(test)]
 mod histories;

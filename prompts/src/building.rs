@@ -99,7 +99,11 @@ pub fn read(answer: &str) -> Result<Briefed, Vec<String>> {
     let left_out: Option<Vec<String>> =
         left_out.map(serde_json::from_value).transpose().map_err(|why| vec![format!("left_out: {why}")])?.flatten();
     let left_out = left_out.unwrap_or_default();
-    let brief: BuildingBrief = serde_json::from_value(value).map_err(|why| vec![why.to_string()])?;
+    let mut brief: BuildingBrief = serde_json::from_value(value).map_err(|why| vec![why.to_string()])?;
+    // Requests speak of rooms by what they are called.
+    for room in &mut brief.rooms {
+        room.name.get_or_insert_with(|| room.kind.to_lowercase());
+    }
     let problems = brief.problems();
     if problems.is_empty() {
         Ok(Briefed { brief, left_out })
@@ -119,6 +123,8 @@ mod tests {
         let read = read(&example().to_string()).unwrap();
         assert_eq!((read.brief.rooms.len(), read.brief.rooms[0].area_m2), (3, Some([25.0, 35.0])));
         assert_eq!(read.left_out, ["a garden"]);
+        let names: Vec<Option<&str>> = read.brief.rooms.iter().map(|room| room.name.as_deref()).collect();
+        assert_eq!(names, [Some("ward"), Some("apothecary"), Some("waiting area")]);
     }
 
     #[test]

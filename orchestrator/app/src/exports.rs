@@ -26,7 +26,7 @@ pub struct ExportOptions {
     /// A bundle or a folder of bundles.
     pub what: PathBuf,
     /// Name of the format.
-    pub to: String,
+    pub format: String,
     /// The run to export; none for the first of each bundle.
     pub run: Option<Run>,
     /// Folder to write; none for one named after bundle and format. Each bundle of a library gets a folder in it.
@@ -38,7 +38,7 @@ pub struct ExportOptions {
 /// # Errors
 /// A format that is none, or a bundle that cannot be exported; of a library all others are written first.
 pub fn export(talk: &Printer, options: &ExportOptions) -> Result<(), Complaint> {
-    let format = Format::named(&options.to).map_err(|why| complaint(&why, None))?;
+    let format = Format::named(&options.format).map_err(|why| complaint(&why, None))?;
     let bundles = bundles_in(std::slice::from_ref(&options.what))?;
     if let [only] = bundles.as_slice()
         && *only == options.what

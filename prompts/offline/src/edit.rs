@@ -8,7 +8,7 @@ use socrates_model::job::Stage;
 use socrates_model::{Behaviors, Fault, FaultCode, Paths, Proposal, Reading};
 use socrates_prompts::Question;
 
-use crate::edit_people::Crowd;
+use crate::edit_whom::Crowd;
 use crate::edit_wish::{Kind, Wish, wishes};
 use crate::{edit_paths, edit_people, edit_settle, edit_together};
 

@@ -7,7 +7,7 @@ use socrates_solver::edit::{Change, changed, joined};
 
 use crate::card::card;
 use crate::edit::Desk;
-use crate::edit_people::{Crowd, Whom};
+use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::{Kind, Wish};
 use crate::{place, solve, spot};
 

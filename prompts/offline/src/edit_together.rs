@@ -4,7 +4,8 @@ use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Action, FactKind, Gesture, HumanId, Rule, Trigger};
 
 use crate::edit::Desk;
-use crate::edit_people::{self, Crowd, Whom};
+use crate::edit_people;
+use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;
 
 /// A gesture is made when the robot is so near, m, and a robot makes one when somebody is, where the edit does not say.

@@ -103,6 +103,7 @@ mod edit_paths;
 mod edit_people;
 mod edit_settle;
 mod edit_together;
+mod edit_whom;
 mod edit_wish;
 
 mod accounted;

@@ -28,7 +28,7 @@ pub(crate) struct Export {
 impl Export {
     pub(super) fn act(&self, talk: &Printer) -> Outcome {
         let Self { what, to, run, out } = self;
-        let options = ExportOptions { what: what.clone(), to: to.clone(), run: run.clone(), out: out.clone() };
+        let options = ExportOptions { what: what.clone(), format: to.clone(), run: run.clone(), out: out.clone() };
         done(exports::export(talk, &options))
     }
 }

@@ -17,6 +17,7 @@ const FRAME_STEP: u64 = 10;
 
 pub(super) const FORMAT: Format = Format {
     name: "eth-ucy",
+    stem: "eth-ucy",
     about: "text of the ETH and UCY data sets: frame, id, x, y; 2.5 frames a second, numbered in tens; the robot is 0",
     foreign: Foreign::Parsed,
     checked_by: "PyPI `numpy` (`loadtxt`, as the loaders of the data sets read it)",

@@ -52,6 +52,7 @@ const WORDS: &str = "the format has no place for words or rules";
 
 pub(super) const FORMAT: Format = Format {
     name: "jupedsim-2",
+    stem: "jupedsim",
     about: "trajectory database of JuPedSim (SQLite, version 2), 100 frames a second; the robot is 0",
     foreign: Foreign::Parsed,
     checked_by: "PyPI `jupedsim` 1.4.2 and `pedpy` 1.5.1",

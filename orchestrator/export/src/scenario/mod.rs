@@ -98,6 +98,8 @@ impl Foreign {
 pub struct Format {
     /// Name in arguments; ends with the version where the format has one.
     pub name: &'static str,
+    /// The name without the version.
+    pub stem: &'static str,
     /// One line about it.
     pub about: &'static str,
     /// What software of others did with it; held by the tests of `tests/foreign`.
@@ -151,10 +153,7 @@ impl Format {
         if let Some(format) = FORMATS.iter().find(|format| format.name == name) {
             return Ok(format);
         }
-        let versions: Vec<&'static Self> = FORMATS
-            .iter()
-            .filter(|format| format.name.rsplit_once('-').is_some_and(|(stem, _)| stem == name))
-            .collect();
+        let versions: Vec<&'static Self> = FORMATS.iter().filter(|format| format.stem == name).collect();
         match versions.as_slice() {
             [only] => Ok(only),
             [] => {
@@ -213,9 +212,9 @@ impl Format {
             let hint = "`socrates run BUNDLE/request.toml` makes a bundle with its recordings";
             if self.needs_run {
                 let problem = format!("the bundle keeps no recording, of which `{}` is made", self.name);
-                return Err(Unusable::new("details/recordings", problem, hint));
+                return Err(Unusable::new("recordings", problem, hint));
             }
-            losses.note("the run", "details/recordings", "the bundle keeps no recording of the run");
+            losses.note("the run", "recordings", "the bundle keeps no recording of the run");
         }
         let files = (self.write)(scenario, &mut losses)?;
         Ok(Package { files, losses })

@@ -17,6 +17,7 @@ const WORDS: &str = "the format has no place for words or rules";
 
 pub(super) const FORMAT: Format = Format {
     name: "pedpy",
+    stem: "pedpy",
     about: "trajectory text and walkable area (WKT) of PedPy, 100 frames a second; the robot is 0",
     foreign: Foreign::Parsed,
     checked_by: "PyPI `pedpy` 1.5.1",

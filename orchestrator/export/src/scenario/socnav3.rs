@@ -21,6 +21,7 @@ const STATIC: &str = "walls of the format never change: doors stand open";
 
 pub(super) const FORMAT: Format = Format {
     name: "socnav3",
+    stem: "socnav3",
     about: "trajectory JSON of SocNav3: grid, robot with its goal, and people, 10 samples a second",
     foreign: Foreign::Neither,
     checked_by: "no reader in a package index; our test holds the rules of its published schema",

@@ -49,6 +49,7 @@ pub(super) const LACKS: &[(Content, &str)] = &[
 
 pub(super) const FORMAT: Format = Format {
     name: "trajnet",
+    stem: "trajnet",
     about: "TrajNet++ ndjson: scenes of 21 frames at 2.5 a second; the robot is pedestrian 0",
     foreign: Foreign::Parsed,
     checked_by: "PyPI `trajnetplusplustools` 0.3.0",

@@ -72,6 +72,7 @@ const CHECKED: &str = "no ROS here: agents and trees are read and played by our 
 /// HuNavSim 1.0.
 pub(super) const HUNAV_1_0: Format = Format {
     name: "hunav-1.0",
+    stem: "hunav",
     about: "HuNavSim 1.0 kit: agents file, world, map, launch file",
     foreign: Foreign::Neither,
     checked_by: CHECKED,
@@ -83,6 +84,7 @@ pub(super) const HUNAV_1_0: Format = Format {
 /// HuNavSim 1.1.
 pub(super) const HUNAV_1_1: Format = Format {
     name: "hunav-1.1",
+    stem: "hunav",
     about: "HuNavSim 1.1 kit: agents file, world, map, launch file",
     write: |scenario, losses| write(scenario, losses, &V1_1),
     ..HUNAV_1_0
@@ -91,6 +93,7 @@ pub(super) const HUNAV_1_1: Format = Format {
 /// HuNavSim 2.0.
 pub(super) const HUNAV_2_0: Format = Format {
     name: "hunav-2.0",
+    stem: "hunav",
     about: "HuNavSim 2.0 kit: agents file, trees (BehaviorTree.CPP 4), world, map, launch file",
     lacks: lacks![(Content::Encounters, NO_MANAGER)],
     write: |scenario, losses| write(scenario, losses, &V2_0),
@@ -100,6 +103,7 @@ pub(super) const HUNAV_2_0: Format = Format {
 /// SocRATES's fork of HuNavSim.
 pub(super) const HUNAV_FORK: Format = Format {
     name: "hunav-fork",
+    stem: "hunav",
     about: "kit for SocRATES's fork of HuNavSim: agents file, trees (BehaviorTree.CPP 3), scenario manager, world, map, launch file",
     lacks: lacks![],
     write: |scenario, losses| write(scenario, losses, &FORK),

@@ -33,6 +33,7 @@ const RULES: &str = "a world has no place for rules of a scenario";
 
 pub(super) const FORMAT: Format = Format {
     name: "sdf-1.6",
+    stem: "sdf",
     about: "world of Gazebo Classic and Gz Sim: walls, doors, lights, people as actors; map.yaml and the robot's way beside it",
     foreign: Foreign::Parsed,
     checked_by: "crate `sdformat` 0.1.0, and Debian's `libsdformat12` where it is installed",
