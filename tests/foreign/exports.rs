@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 use socrates_tests::{root, skip};
 
+use super::built::reader;
 use super::python::python;
 use crate::{WAREHOUSE, make, socrates};
 
@@ -76,7 +77,6 @@ fn readers_of_tracks_find_the_positions_of_the_run() {
 }
 
 /// A program around a reader of SDF that others wrote: what it finds in each file, a line each.
-const SDF_MANIFEST: &str = "[package]\nname = \"sdf-reader\"\nversion = \"0.1.0\"\nedition = \"2021\"\n[dependencies]\nsdformat = \"=0.1.0\"\n[profile.dev]\ndebug = 0\n[workspace]\n";
 const SDF_MAIN: &str = r#"
 fn main() {
     for file in std::env::args().skip(1) {
@@ -96,30 +96,6 @@ fn main() {
     }
 }
 "#;
-
-/// That program; it is built in the second ring.
-fn sdf_reader() -> Result<PathBuf, String> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("sdf-reader");
-    let program = folder.join("target/debug/sdf-reader");
-    if program.is_file() {
-        return Ok(program);
-    }
-    if !skip::second_ring() {
-        return Err("`sdformat` is not here; `./gate --foreign` builds it".to_owned());
-    }
-    let write =
-        |path: &Path, text: &str| std::fs::write(path, text).map_err(|why| format!("{}: {why}", path.display()));
-    std::fs::create_dir_all(folder.join("src")).map_err(|why| format!("{}: {why}", folder.display()))?;
-    write(&folder.join("Cargo.toml"), SDF_MANIFEST)?;
-    write(&folder.join("src/main.rs"), SDF_MAIN)?;
-    let built = Command::new("cargo")
-        .args(["build", "--quiet", "--target-dir", "target"])
-        .current_dir(&folder)
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|why| format!("cargo: {why}"))?;
-    if built.status.success() { Ok(program) } else { Err(String::from_utf8_lossy(&built.stderr).into_owned()) }
-}
 
 /// Bundles in locations with and without doors, and the world of each.
 fn worlds(at: &Path) -> Vec<(PathBuf, Value)> {
@@ -157,7 +133,11 @@ fn worlds(at: &Path) -> Vec<(PathBuf, Value)> {
 #[test]
 fn the_crate_for_sdf_reads_walls_doors_and_actors_and_refuses_a_damaged_world() {
     static READER: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    let Some(reader) = skip::installed(READER.get_or_init(sdf_reader).clone()) else { return };
+    let Some(reader) =
+        skip::installed(READER.get_or_init(|| reader("sdf-reader", ("sdformat", "0.1.0"), SDF_MAIN)).clone())
+    else {
+        return;
+    };
     let folder = tempfile::tempdir().unwrap();
     let read = |file: &Path| {
         let out = Command::new(&reader).arg(file).stdin(Stdio::null()).output().unwrap();

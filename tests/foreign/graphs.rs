@@ -1,13 +1,14 @@
 //! Graphs and buildings in the hands of readers that others wrote: `geojson` and `networkx` from the package index of Python, and
 //! the reader of Open-RMF's site editor, a crate that is built in a folder of its own.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 use serde_json::Value;
 use socrates_tests::skip;
 
+use super::built::reader;
 use super::python::python;
 use crate::socrates;
 
@@ -57,7 +58,6 @@ fn geojson_and_networkx_read_the_graphs_of_a_location() {
 }
 
 /// A program around the reader of Open-RMF's site editor: what it finds in each file, a line each.
-const MANIFEST: &str = "[package]\nname = \"rmf-reader\"\nversion = \"0.1.0\"\nedition = \"2021\"\n[dependencies]\nrmf_site_format = \"=0.0.2\"\n[profile.dev]\ndebug = 0\n[workspace]\n";
 const MAIN: &str = r#"
 use rmf_site_format::legacy::building_map::BuildingMap;
 
@@ -79,34 +79,14 @@ fn main() {
 }
 "#;
 
-/// That program; it is built in the second ring, which takes some minutes the first time.
-fn rmf_reader() -> Result<PathBuf, String> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("rmf-reader");
-    let program = folder.join("target/debug/rmf-reader");
-    if program.is_file() {
-        return Ok(program);
-    }
-    if !skip::second_ring() {
-        return Err("`rmf_site_format` is not here; `./gate --foreign` builds it".to_owned());
-    }
-    let write =
-        |path: &Path, text: &str| std::fs::write(path, text).map_err(|why| format!("{}: {why}", path.display()));
-    std::fs::create_dir_all(folder.join("src")).map_err(|why| format!("{}: {why}", folder.display()))?;
-    write(&folder.join("Cargo.toml"), MANIFEST)?;
-    write(&folder.join("src/main.rs"), MAIN)?;
-    let built = Command::new("cargo")
-        .args(["build", "--quiet", "--target-dir", "target"])
-        .current_dir(&folder)
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|why| format!("cargo: {why}"))?;
-    if built.status.success() { Ok(program) } else { Err(String::from_utf8_lossy(&built.stderr).into_owned()) }
-}
-
 #[test]
 fn the_reader_of_the_site_editor_makes_a_site_of_a_building_and_refuses_a_damaged_one() {
     static READER: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    let Some(reader) = skip::installed(READER.get_or_init(rmf_reader).clone()) else { return };
+    let Some(reader) =
+        skip::installed(READER.get_or_init(|| reader("rmf-reader", ("rmf_site_format", "0.0.2"), MAIN)).clone())
+    else {
+        return;
+    };
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let read = |file: &str| {

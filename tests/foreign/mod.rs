@@ -2,6 +2,7 @@
 //! everything installed; elsewhere what is missing is left out and named.
 
 mod bags;
+mod built;
 mod consoles;
 mod deploy;
 mod drivers;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use socrates_model::paths::ROBOT_WAY_M;
 use socrates_model::{
     AgentId, Fault, FaultCode, HumanId, Location, NodeId, Paths, Proposal, Relation, SceneGraph, Where,
 };
@@ -12,8 +13,6 @@ use crate::{encounters, free, groups, list, relations, timing};
 
 /// Fewest nodes of the robot's path.
 const ROBOT_NODES: usize = 4;
-/// Shortest path of the robot, m.
-const ROBOT_M: f64 = 6.0;
 /// Shortest path of a human who moves, m.
 const HUMAN_M: f64 = 3.0;
 /// Shortest path of a human who only has to get out of a room or car, m.
@@ -30,7 +29,7 @@ pub fn check_paths(paths: &Paths, proposal: &Proposal, location: &Location) -> V
         let broken = steps(agent, nodes, proposal.place, &location.graph);
         sound &= broken.is_empty();
         faults.extend(broken);
-        // Who meets somebody twice comes back for it.
+        // A person who meets the robot twice comes back for it.
         let again = |human: HumanId| paths.encounters_of(human).count() > 1;
         let twice = match agent {
             AgentId::Robot => paths.comes_back() || paths.humans.keys().copied().any(again),
@@ -122,9 +121,9 @@ fn steps(agent: AgentId, nodes: &[NodeId], place: socrates_model::PlaceClass, gr
 fn lengths(paths: &Paths, proposal: &Proposal, graph: &SceneGraph) -> Vec<Fault> {
     let mut faults = Vec::new();
     let robot_m = graph.length_m(&paths.robot);
-    if paths.robot.len() < ROBOT_NODES || robot_m < ROBOT_M {
+    if paths.robot.len() < ROBOT_NODES || robot_m < ROBOT_WAY_M {
         let message = format!(
-            "has a path of {} nodes and {robot_m:.1} m; at least {ROBOT_NODES} nodes and {ROBOT_M} m are needed",
+            "has a path of {} nodes and {robot_m:.1} m; at least {ROBOT_NODES} nodes and {ROBOT_WAY_M} m are needed",
             paths.robot.len()
         );
         faults.push(Fault::new(FaultCode::GShort, AgentId::Robot, message));

@@ -31,6 +31,9 @@ pub struct Visit<'a> {
     pub human_step: Option<usize>,
 }
 
+/// Shortest way of a robot that is accepted, m.
+pub const ROBOT_WAY_M: f64 = 6.0;
+
 /// Node sequences for everybody.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -46,7 +49,7 @@ pub struct Paths {
     /// Why these paths, in a sentence or two.
     #[serde(default)]
     pub reasoning: String,
-    /// Who wrote it.
+    /// Name of the author.
     pub author: crate::Signature,
 }
 
@@ -85,7 +88,7 @@ impl Paths {
 
     /// Which visits of their nodes the encounters of a human mean, one after the other: the first on the robot's path
     /// after that of the encounter before, its start left out, and the same on the human's path, its start counted.
-    /// Who stands is always at its one node. Where an encounter is not on a path in this order, it has no visit there,
+    /// An agent that stands is always at its one node. Where an encounter is not on a path in this order, it has no visit there,
     /// and the next is looked for from the same place.
     #[must_use]
     pub fn visits(&self, human: HumanId) -> Vec<Visit<'_>> {

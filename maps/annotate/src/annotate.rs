@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 use socrates_maps::Layer;
+use socrates_model::paths::ROBOT_WAY_M;
 use socrates_model::{
     Cell as Kind, Door, DoorKind, DoorOpens, Fault, FaultCode, GraphEdge, GraphNode, Grid, NodeId, Point, SceneGraph,
     Where,
@@ -32,8 +33,6 @@ const FLOOR_SHARE: f64 = 0.3;
 const NAMED_M2: f64 = 4.0;
 /// At most so many places of one kind are named one by one.
 const NAMED_MOST: usize = 6;
-/// Shortest way of a robot that is accepted, m.
-const LEAST_WAY_M: f64 = 6.0;
 /// Doors less sure than this are named.
 const DOUBTFUL: f64 = 0.68;
 /// Points in the map frame must lie this near to floor, m.
@@ -449,9 +448,9 @@ fn doubts(floor: &Floor, regions: &Regions, made: &Annotation, remarks: &mut Vec
         remarks.push(Remark::new(RemarkKind::OneFloor, at, text));
     }
     let all_m: f64 = made.graph.edges().iter().filter_map(|edge| made.graph.edge_length_m(&edge.from, &edge.to)).sum();
-    if all_m < LEAST_WAY_M {
+    if all_m < ROBOT_WAY_M {
         let text = format!(
-            "all ways together are {all_m:.1} m long; the robot's way alone has at least {LEAST_WAY_M} m, so nothing can be played here"
+            "all ways together are {all_m:.1} m long; the robot's way alone has at least {ROBOT_WAY_M} m, so nothing can be played here"
         );
         remarks.push(Remark::new(RemarkKind::Small, None, text));
     }

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::time::Duration;
 
-use socrates_author::{Keys, Server};
+use socrates_author::{AskError, Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
 use socrates_model::job::{BEHAVIORS_BY, BY_PROPOSAL};
@@ -171,16 +171,21 @@ pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<
     }
 }
 
+/// That an author gave nothing, and why: its server's fault or the input's.
+pub(crate) fn unasked(what: String, why: &AskError, hint: &str) -> Complaint {
+    let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
+    Complaint::faults(what, &[why.fault()], hint).with_code(code)
+}
+
 /// Looks whether these authors can be asked, before anything is made.
 pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &AuthorSpec>) -> Result<(), Complaint> {
     let authors: BTreeSet<String> = authors.into_iter().map(AuthorSpec::to_string).collect();
     let keys = keys(config)?;
     for author in authors {
         if let Err(why) = socrates_author::check(&author, &keys).await {
-            let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
             let what = format!("the author `{author}` cannot be asked; nothing was made");
             let hint = "`socrates config author` shows model, address and key; `--author offline` needs none";
-            return Err(Complaint::faults(what, &[why.fault()], hint).with_code(code));
+            return Err(unasked(what, &why, hint));
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use socrates_model::BuildingBrief;
 
 use crate::authors;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::Complaint;
 use crate::files;
 use crate::map;
 use crate::output::Printer;
@@ -33,39 +33,36 @@ pub struct BuildOptions {
     pub out: PathBuf,
 }
 
-/// The author that is no model.
-const OFFLINE: &str = "offline";
-
 /// Builds what a brief asks for into a folder: the floor plan, the location that it makes, and the brief.
 ///
 /// A folder that holds anything already is left as it is.
 pub async fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<(), Complaint> {
     let BuildOptions { what, author, seed, out } = options;
-    is_free(out)?;
-    let brief = match author {
-        Some(author) if author != OFFLINE && !is_file(what) => asked(talk, config, author, what, *seed).await?,
-        Some(_) | None => brief(what)?,
+    map::is_free(out)?;
+    let (brief, built) = match author {
+        Some(author) if author != socrates_offline::NAME && !is_file(what) => {
+            asked(talk, config, author, what, *seed).await?
+        }
+        Some(_) | None => ruled(what, *seed)?,
     };
-    drawn(talk, &brief, *seed, out)
+    write(talk, &brief, &built, *seed, out)
 }
 
-fn is_free(out: &Path) -> Result<(), Complaint> {
-    if std::fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some()) {
-        let message = format!("`{}` is there already and is not an empty folder", out.display());
-        return Err(Complaint::input(message, "name another folder with `--out`, or remove it"));
-    }
-    Ok(())
+/// What the rules of this program make of a sentence, or a brief says.
+fn ruled(what: &str, seed: u64) -> Result<(BuildingBrief, Built), Complaint> {
+    let brief = brief(what)?;
+    let built = socrates_maps::random::build(&brief, seed).map_err(|why| not_built(&why))?;
+    Ok((brief, built))
 }
 
-/// Draws what a brief asks for, and writes it.
-fn drawn(talk: &Printer, brief: &BuildingBrief, seed: u64, out: &Path) -> Result<(), Complaint> {
-    let built = socrates_maps::random::build(brief, seed).map_err(|why| not_built(&why))?;
+/// Writes a building with its brief.
+fn write(talk: &Printer, brief: &BuildingBrief, built: &Built, seed: u64, out: &Path) -> Result<(), Complaint> {
     let mut all = built.files.clone();
     let text = toml::to_string(brief)
         .map_err(|why| Complaint::input(format!("the brief cannot be written: {why}"), "leave unusual letters out"))?;
     all.insert(BRIEF.to_owned(), text.into_bytes());
     map::folder(&all, out)?;
-    told(talk, &built);
+    told(talk, built);
     talk.line(&format!("wrote      {} ({})", out.display(), all.keys().cloned().collect::<Vec<_>>().join(", ")));
     talk.line(&format!("next       socrates map draw {}", files::shell(out)));
     talk.result(&json!({
@@ -119,29 +116,30 @@ fn not_built(why: &NotBuilt) -> Complaint {
     }
 }
 
-/// The brief that a language model makes of a sentence, with what it left out; asked again with what cannot be built.
+/// The building of the brief that a language model makes of a sentence; asked again with what cannot be built. Says what was left out.
 async fn asked(
     talk: &Printer,
     config: &Config,
     author: &str,
     words: &str,
     seed: u64,
-) -> Result<BuildingBrief, Complaint> {
-    let builds = |brief: &BuildingBrief| match socrates_maps::random::build(brief, seed) {
-        Ok(_) => Vec::new(),
-        Err(NotBuilt::Unmet(unmet)) => unmet.iter().map(ToString::to_string).collect(),
-        Err(NotBuilt::Flawed(faults)) => faults.iter().map(ToString::to_string).collect(),
+) -> Result<(BuildingBrief, Built), Complaint> {
+    let builds = |brief: &BuildingBrief| {
+        socrates_maps::random::build(brief, seed).map_err(|why| match why {
+            NotBuilt::Unmet(unmet) => unmet.iter().map(ToString::to_string).collect(),
+            NotBuilt::Flawed(faults) => faults.iter().map(ToString::to_string).collect(),
+        })
     };
     let keys = authors::keys(config)?;
-    let made = socrates_author::building::brief(author, &keys, words, seed, builds).await.map_err(|why| {
-        let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
+    let asked = socrates_author::building::brief(author, &keys, words, seed, builds).await;
+    let (made, built) = asked.map_err(|why| {
         let hint = "say it in simpler words, write a brief as a file, or leave `--author` out (docs/buildings.md)";
-        Complaint::faults(format!("`{author}` made no building"), &[why.fault()], hint).with_code(code)
+        authors::unasked(format!("`{author}` made no building"), &why, hint)
     })?;
     for wish in &made.left_out {
         talk.line(&format!("left out   {wish}"));
     }
-    Ok(made.brief)
+    Ok((made.brief, built))
 }
 
 fn is_file(what: &str) -> bool {
@@ -184,8 +182,9 @@ mod tests {
 
     /// A building without a model.
     fn build(talk: &Printer, what: &str, seed: u64, out: &Path) -> Result<(), Complaint> {
-        is_free(out)?;
-        drawn(talk, &brief(what)?, seed, out)
+        map::is_free(out)?;
+        let (brief, built) = ruled(what, seed)?;
+        write(talk, &brief, &built, seed, out)
     }
 
     #[test]

@@ -227,13 +227,9 @@ pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Complaint
     write(talk, &generated(plan)?, out)
 }
 
-/// Makes a location folder from a floor plan that is drawn by a seed, with the plan in it.
-///
-/// Without `out` the folder is called by kind and seed. A folder that holds anything already is left as it is.
-pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Result<(), Complaint> {
-    let kind = self::kind(kind)?;
-    let out = out.map_or_else(|| PathBuf::from(socrates_maps::random::name(seed, kind)), Path::to_path_buf);
-    let taken = match std::fs::read_dir(&out) {
+/// Whether a folder can be written: one that holds anything, or a file in its place, is left as it is.
+pub(crate) fn is_free(out: &Path) -> Result<(), Complaint> {
+    let taken = match std::fs::read_dir(out) {
         Ok(mut entries) => entries.next().is_some(),
         Err(why) => why.kind() != std::io::ErrorKind::NotFound,
     };
@@ -241,6 +237,16 @@ pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Resu
         let message = format!("`{}` is there already and is not an empty folder", out.display());
         return Err(Complaint::input(message, "name another folder with `--out`, or remove it"));
     }
+    Ok(())
+}
+
+/// Makes a location folder from a floor plan that is drawn by a seed, with the plan in it.
+///
+/// Without `out` the folder is called by kind and seed. A folder that holds anything already is left as it is.
+pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Result<(), Complaint> {
+    let kind = self::kind(kind)?;
+    let out = out.map_or_else(|| PathBuf::from(socrates_maps::random::name(seed, kind)), Path::to_path_buf);
+    is_free(&out)?;
     let files = socrates_maps::random::files(seed, kind).map_err(|faults| not_usable(seed, kind, &faults))?;
     write(talk, &files, &out)
 }

@@ -1,4 +1,4 @@
-//! Who is left out, by the rules that the study declares.
+//! People who are left out, by the rules that the study declares.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -86,7 +86,7 @@ pub struct Row {
 /// All ratings of a study and who gave them. Rows stand in the order of participant, film and item.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ratings {
-    /// Who took part, by id.
+    /// The participants, by id.
     pub participants: Vec<Participant>,
     /// What they said.
     pub rows: Vec<Row>,

@@ -210,7 +210,7 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
     let waits = said.rules.iter().all(|read| read.rule.act == Action::StandStill && !read.stated);
     let at_place = class.is_some() && waits && said.relation.is_none();
     let relation = if at_place { Relation::Static } else { read.relation_of(who).unwrap_or(Relation::Frontal) };
-    // Who only waits somewhere stands there all the time.
+    // Somebody who only waits somewhere stands there all the time.
     let rules: Vec<Rule> = if relation == Relation::Static && waits {
         Vec::new()
     } else {
@@ -345,7 +345,7 @@ pub(crate) fn no_gestures(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         for who in people {
             let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };
             let before = human.rules.clone();
-            // Who walked on with a gesture just walks on.
+            // Somebody who walked on with a gesture just walks on.
             human.rules.retain(|rule| rule.gesture.is_none() || rule.act != Action::Navigate);
             for rule in &mut human.rules {
                 rule.gesture = None;
@@ -377,7 +377,7 @@ pub(crate) fn no_gestures(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     }
 }
 
-/// Who waited for a word of the robot reacts to its nearness.
+/// People who waited for a word of the robot react to its nearness.
 fn deaf(desk: &mut Desk) {
     for who in 0..desk.draft.proposal.humans.len() {
         let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };

@@ -233,7 +233,7 @@ fn made(gesture: Gesture, meters: Option<f64>) -> Rule {
     Rule { when, act, gesture: Some(gesture), for_s: Some(lasts), latched: true, ..Rule::default() }
 }
 
-/// Who waited for the one gesture waits for the other.
+/// People who waited for the one gesture wait for the other.
 fn heard(desk: &mut Desk, id: HumanId, old: Gesture, new: Gesture) {
     for who in 0..desk.draft.proposal.humans.len() {
         let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };

@@ -1,4 +1,4 @@
-//! Whom an edit speaks of, among the people of a scenario.
+//! The people that an edit speaks of, among the people of a scenario.
 
 use socrates_model::{HumanProposal, Proposal};
 
@@ -12,7 +12,7 @@ pub(crate) struct Crowd {
     pub(crate) cast: Cast,
 }
 
-/// Whom an edit speaks of.
+/// The people that an edit speaks of.
 pub(crate) enum Whom {
     Robot,
     People(Vec<usize>),
@@ -35,7 +35,7 @@ impl Crowd {
         self.cast.people.len() > 1 && wish.clauses.iter().any(|clause| mentions(&clause.words).iter().any(one))
     }
 
-    /// Whom the words mean; people who are not there are nobody.
+    /// The people that the words mean; those who are not there are nobody.
     pub(crate) fn whom(&mut self, wish: &Wish) -> Whom {
         let mut found = Vec::new();
         let mut robot = false;

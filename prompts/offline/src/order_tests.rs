@@ -9,7 +9,7 @@ fn told(rough: &str) -> Reading {
     read(&request("Drive along the corridor", Some(rough)), &map("office"))
 }
 
-/// Who is there before whom; 0 is the robot.
+/// Pairs of agents, the first of whom is there before the second; 0 is the robot.
 fn order(reading: &Reading) -> Vec<(u32, u32)> {
     let number = |agent: &AgentId| if let AgentId::Human(id) = agent { id.number() } else { 0 };
     let of = |kind: &FactKind| {

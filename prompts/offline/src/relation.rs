@@ -117,7 +117,7 @@ fn lost(cast: &mut Cast, who: usize, (relation, quote): (Relation, &str), played
         Relation::Ahead => &["walks ahead of the robot"],
         Relation::Crossing => &["crosses"],
         Relation::Abreast => &["walks beside the robot"],
-        // Who comes out, or stays inside, of where it stood stood there.
+        // People who come out of, or stay inside, the place where they stood did stand there.
         Relation::Static | Relation::Leaving | Relation::Staying | Relation::Aside => return,
     };
     let same = person.relation.as_ref().is_some_and(|(_, other)| other == quote);

@@ -7,7 +7,7 @@ use crate::fit;
 use crate::graph::Net;
 
 /// Shortest path of the robot that is taken where the map has no longer one, m.
-pub(crate) const SHORTEST_M: f64 = 6.0;
+pub(crate) const SHORTEST_M: f64 = socrates_model::paths::ROBOT_WAY_M;
 
 /// Free widths of the floor at the nodes of a class that lie outside of rooms, m, in order of the nodes.
 #[must_use]

@@ -6,6 +6,7 @@ use socrates_llm::{
 };
 use socrates_model::FaultCode;
 use socrates_model::job::Stage;
+use socrates_prompts::message::Message;
 use socrates_prompts::{Image, Mode, PathsForm, Picture, Prompt, Question, Role, Style};
 
 use crate::author::{Answer, AskError, Author, How};
@@ -113,16 +114,11 @@ pub fn chat_request(
 ) -> Result<ChatRequest, AskError> {
     let mut turns = Vec::new();
     for message in &prompt.messages {
-        let speaker = match message.role {
-            Role::System => Speaker::System,
-            Role::User => Speaker::User,
-            Role::Assistant => Speaker::Assistant,
-        };
         let png = match message.image {
             Some(Picture::AnnotatedMap) if image != Image::Off => Some(picture(question, image)?),
             Some(Picture::AnnotatedMap) | None => None,
         };
-        turns.push(Turn { speaker, text: message.text.clone(), png });
+        turns.push(Turn { png, ..turn(message) });
     }
     Ok(ChatRequest {
         turns,
@@ -134,6 +130,16 @@ pub fn chat_request(
         max_tokens,
         detail: if image == Image::High { Detail::High } else { Detail::Low },
     })
+}
+
+/// A message in the words of the client, without a picture.
+pub(crate) fn turn(message: &Message) -> Turn {
+    let speaker = match message.role {
+        Role::System => Speaker::System,
+        Role::User => Speaker::User,
+        Role::Assistant => Speaker::Assistant,
+    };
+    Turn { speaker, text: message.text.clone(), png: None }
 }
 
 /// The part of the map with its graph, no larger than asked for.

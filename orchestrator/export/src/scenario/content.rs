@@ -6,6 +6,41 @@ use socrates_model::{AgentId, AgentState, Cell, DoorOpens, Recording};
 
 use super::Scenario;
 
+/// Why tracks lack headings, velocities and the like.
+pub(super) const POSITIONS: &str = "the format holds positions alone";
+/// Why tracks lack roles, rules and texts.
+pub(super) const WORDS: &str = "the format has no place for words or rules";
+
+/// Why cells that nobody has seen are not told from walls.
+pub(super) const NEVER_SEEN: &str = "what was never seen is no floor, as walls are";
+
+/// What formats of tracks lack: `first`, all of states but places, words and rules; of the floor `floor`, and the graph for a reason of
+/// their own.
+macro_rules! tracks_lack {
+    ([$($first:expr),*], $states:expr, [$($floor:expr),* $(,)?], $graph:expr) => {
+        &[
+            $($first,)*
+            (Content::Velocities, $states),
+            (Content::Gestures, $states),
+            (Content::Leaves, $states),
+            (Content::Events, $states),
+            (Content::Radii, $states),
+            (Content::Speeds, $states),
+            (Content::Roles, WORDS),
+            (Content::Groups, WORDS),
+            $($floor,)*
+            (Content::Graph, $graph),
+            (Content::AreaNames, $graph),
+            (Content::Paths, WORDS),
+            (Content::Encounters, WORDS),
+            (Content::Trees, WORDS),
+            (Content::Clauses, WORDS),
+            (Content::Texts, WORDS),
+        ]
+    };
+}
+pub(super) use tracks_lack;
+
 /// A kind of content. A format holds it or lists it as lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Content {

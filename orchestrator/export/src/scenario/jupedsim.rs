@@ -4,7 +4,7 @@
 
 use socrates_model::AgentState;
 
-use super::content::Content;
+use super::content::{Content, NEVER_SEEN, WORDS, tracks_lack};
 use super::frames::{file_name, samples};
 use super::outline::walkable;
 use super::{File, Files, Foreign, Format, Scenario};
@@ -48,7 +48,6 @@ pub struct Database {
 }
 
 const LACKS_POSITIONS: &str = "the format holds positions and orientations alone";
-const WORDS: &str = "the format has no place for words or rules";
 
 pub(super) const FORMAT: Format = Format {
     name: "jupedsim-2",
@@ -57,26 +56,16 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `jupedsim` 1.4.2 and `pedpy` 1.5.1",
     needs_run: true,
-    lacks: &[
-        (Content::Velocities, LACKS_POSITIONS),
-        (Content::Gestures, LACKS_POSITIONS),
-        (Content::Leaves, LACKS_POSITIONS),
-        (Content::Events, LACKS_POSITIONS),
-        (Content::Radii, LACKS_POSITIONS),
-        (Content::Speeds, LACKS_POSITIONS),
-        (Content::Roles, WORDS),
-        (Content::Groups, WORDS),
-        (Content::UnknownCells, "what was never seen is no floor, as walls are"),
-        (Content::Doors, "doors stand open: the floor is written once"),
-        (Content::DoorRules, "doors stand open: the floor is written once"),
-        (Content::Graph, WORDS),
-        (Content::AreaNames, WORDS),
-        (Content::Paths, WORDS),
-        (Content::Encounters, WORDS),
-        (Content::Trees, WORDS),
-        (Content::Clauses, WORDS),
-        (Content::Texts, WORDS),
-    ],
+    lacks: tracks_lack!(
+        [],
+        LACKS_POSITIONS,
+        [
+            (Content::UnknownCells, NEVER_SEEN),
+            (Content::Doors, "doors stand open: the floor is written once"),
+            (Content::DoorRules, "doors stand open: the floor is written once"),
+        ],
+        WORDS
+    ),
     write,
 };
 

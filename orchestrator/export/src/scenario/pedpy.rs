@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::content::Content;
+use super::content::{Content, NEVER_SEEN, POSITIONS, WORDS, tracks_lack};
 use super::frames::{file_name, real, samples};
 use super::outline::walkable;
 use super::{File, Files, Foreign, Format, Scenario};
@@ -12,9 +12,6 @@ use crate::not_carried::Losses;
 /// Frames a second.
 const FPS: u64 = 100;
 
-const POSITIONS: &str = "the format holds positions alone";
-const WORDS: &str = "the format has no place for words or rules";
-
 pub(super) const FORMAT: Format = Format {
     name: "pedpy",
     stem: "pedpy",
@@ -22,27 +19,16 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `pedpy` 1.5.1",
     needs_run: true,
-    lacks: &[
-        (Content::Headings, POSITIONS),
-        (Content::Velocities, POSITIONS),
-        (Content::Gestures, POSITIONS),
-        (Content::Leaves, POSITIONS),
-        (Content::Events, POSITIONS),
-        (Content::Radii, POSITIONS),
-        (Content::Speeds, POSITIONS),
-        (Content::Roles, WORDS),
-        (Content::Groups, WORDS),
-        (Content::UnknownCells, "what was never seen is no floor, as walls are"),
-        (Content::Doors, "the floor of the format never changes: doors stand open"),
-        (Content::DoorRules, "the floor of the format never changes: doors stand open"),
-        (Content::Graph, WORDS),
-        (Content::AreaNames, WORDS),
-        (Content::Paths, WORDS),
-        (Content::Encounters, WORDS),
-        (Content::Trees, WORDS),
-        (Content::Clauses, WORDS),
-        (Content::Texts, WORDS),
-    ],
+    lacks: tracks_lack!(
+        [(Content::Headings, POSITIONS)],
+        POSITIONS,
+        [
+            (Content::UnknownCells, NEVER_SEEN),
+            (Content::Doors, "the floor of the format never changes: doors stand open"),
+            (Content::DoorRules, "the floor of the format never changes: doors stand open"),
+        ],
+        WORDS
+    ),
     write,
 };
 

@@ -6,7 +6,7 @@
 use serde_json::json;
 use socrates_model::AgentId;
 
-use super::content::Content;
+use super::content::{Content, POSITIONS, WORDS, tracks_lack};
 use super::frames::{Sample, between, file_name, number, samples};
 use super::{File, Files, Foreign, Format, Scenario};
 use crate::graph::Unusable;
@@ -19,33 +19,15 @@ const STRIDE: usize = 12;
 /// Ticks from frame to frame: 0.4 s.
 const TICKS: u64 = 40;
 
-const POSITIONS: &str = "the format holds positions alone";
 const FLOOR: &str = "the format knows no floor";
-const WORDS: &str = "the format has no place for words or rules";
 
 /// What it lacks; ETH/UCY lacks the same.
-pub(super) const LACKS: &[(Content, &str)] = &[
-    (Content::Headings, POSITIONS),
-    (Content::Velocities, POSITIONS),
-    (Content::Gestures, POSITIONS),
-    (Content::Leaves, POSITIONS),
-    (Content::Events, POSITIONS),
-    (Content::Radii, POSITIONS),
-    (Content::Speeds, POSITIONS),
-    (Content::Roles, WORDS),
-    (Content::Groups, WORDS),
-    (Content::Walls, FLOOR),
-    (Content::UnknownCells, FLOOR),
-    (Content::Doors, FLOOR),
-    (Content::DoorRules, FLOOR),
-    (Content::Graph, FLOOR),
-    (Content::AreaNames, FLOOR),
-    (Content::Paths, WORDS),
-    (Content::Encounters, WORDS),
-    (Content::Trees, WORDS),
-    (Content::Clauses, WORDS),
-    (Content::Texts, WORDS),
-];
+pub(super) const LACKS: &[(Content, &str)] = tracks_lack!(
+    [(Content::Headings, POSITIONS)],
+    POSITIONS,
+    [(Content::Walls, FLOOR), (Content::UnknownCells, FLOOR), (Content::Doors, FLOOR), (Content::DoorRules, FLOOR),],
+    FLOOR
+);
 
 pub(super) const FORMAT: Format = Format {
     name: "trajnet",

@@ -59,7 +59,7 @@ enum Role {
     Watched { film: String },
     /// Place of a film in the order, from 1.
     Position { film: String },
-    /// Who answered.
+    /// Id of the person who answered.
     Person,
     /// The order of films.
     Order,

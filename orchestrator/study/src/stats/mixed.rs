@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use super::squares::Squares;
 use super::{NoValue, dist, float};
 
 /// The linear model with one random intercept per person, by restricted maximum likelihood.
@@ -30,11 +31,7 @@ pub fn balanced_mixed(table: &DMatrix<f64>) -> Result<Balanced, NoValue> {
         return Err(NoValue::TooFew { what: "people or conditions", found: rows.min(columns), needed: 2 });
     }
     let (n, k) = (float(rows), float(columns));
-    let grand = table.mean();
-    let squares = |mean: f64| (mean - grand) * (mean - grand);
-    let total: f64 = table.iter().map(|value| squares(*value)).sum();
-    let people: f64 = k * table.row_iter().map(|row| squares(row.mean())).sum::<f64>();
-    let conditions: f64 = n * table.column_iter().map(|column| squares(column.mean())).sum::<f64>();
+    let Squares { total, rows: people, columns: conditions } = Squares::of(table);
     let (mut df, mut within) = ((n - 1.0) * (k - 1.0), total - people - conditions);
     let mut between = (people / (n - 1.0) - within / df) / k;
     if between < 0.0 {

@@ -17,6 +17,7 @@ mod paired;
 mod quadrature;
 mod rank;
 mod reliability;
+mod squares;
 mod wilcoxon;
 
 pub use agreement::{Level, krippendorff, weighted_kappa};

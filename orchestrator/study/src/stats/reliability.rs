@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::rank::pearson;
+use super::squares::Squares;
 use super::{NoValue, dist, float};
 
 /// Cronbach's alpha and what belongs to it.
@@ -140,11 +141,7 @@ pub fn icc(table: &DMatrix<f64>) -> Result<Iccs, NoValue> {
         return Err(NoValue::TooFew { what: "targets or raters", found: rows.min(columns), needed: 2 });
     }
     let (n, k) = (float(rows), float(columns));
-    let grand = table.mean();
-    let squares = |mean: f64| (mean - grand) * (mean - grand);
-    let total: f64 = table.iter().map(|value| squares(*value)).sum();
-    let between: f64 = k * table.row_iter().map(|row| squares(row.mean())).sum::<f64>();
-    let raters: f64 = n * table.column_iter().map(|column| squares(column.mean())).sum::<f64>();
+    let Squares { total, rows: between, columns: raters } = Squares::of(table);
     if total < 1e-12 {
         return Err(NoValue::Constant);
     }

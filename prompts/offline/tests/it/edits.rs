@@ -173,7 +173,7 @@ fn nobody_gestures_any_more() {
         assert!(proposal.humans.iter().flat_map(|human| &human.rules).all(|rule| rule.gesture.is_none()), "{words}");
         let gestures = |clause: &socrates_model::Clause| matches!(clause.predicate, Predicate::Gestures { .. });
         assert!(!proposal.expected_events.iter().any(gestures), "{words}");
-        // Who waited for the word reacts to the robot itself.
+        // Somebody who waited for the word reacts to the robot itself.
         assert_eq!(proposal.humans[1].rules[0].when, [Trigger::RobotNear(3.0)], "{words}");
     }
 }

@@ -99,6 +99,14 @@ function choose(kind, id, more) {
   showChosen();
 }
 
+// An edge that ends on free floor: a node is made there.
+function edgeToFloor(start, at) {
+  const id = freeName();
+  choice.clear();
+  choice.nodes.add(id);
+  return edit({ several: [{ add_node: { id, kind: typed(), at } }, { add_edge: { from: start.id, to: id, kind: edgeKind(start.kind, typed()) } }] });
+}
+
 // What a click does with the present tool: at a place of the image, on what is there.
 async function act(spot, event, on = {}) {
   const node = on.node || nodeNear(toScreen(spot));
@@ -123,12 +131,9 @@ async function act(spot, event, on = {}) {
   if (tool === "edge") {
     if (!node && !held) return say("An edge begins at a node.");
     if (!node) {
-      // On free floor a node is made, as where an edge is dragged there.
-      const start = nodeOf(held), id = freeName();
+      const start = nodeOf(held);
       held = false;
-      choice.clear();
-      choice.nodes.add(id);
-      return start ? edit({ several: [{ add_node: { id, kind: typed(), at: snapped(spot, event).spot } }, { add_edge: { from: start.id, to: id, kind: edgeKind(start.kind, typed()) } }] }) : null;
+      return start ? edgeToFloor(start, snapped(spot, event).spot) : null;
     }
     if (!held || held === node.id) { held = node.id; choose("nodes", node.id); return say(`From ${node.id}: click the node where the edge ends.`); }
     const from = nodeOf(held);
@@ -232,7 +237,7 @@ async function ended(event) {
     drawAll();
   } else if (done.kind === "edge") {
     if (done.target) await edit({ add_edge: { from: done.start.id, to: done.target.id, kind: edgeKind(done.start.kind, done.target.kind) } });
-    else { const id = freeName(); choice.clear(); choice.nodes.add(id); await edit({ several: [{ add_node: { id, kind: typed(), at: done.to } }, { add_edge: { from: done.start.id, to: id, kind: edgeKind(done.start.kind, typed()) } }] }); }
+    else await edgeToFloor(done.start, done.to);
   } else if (done.kind === "door") {
     try { await addDoor(await ask("/opening", { on: [done.from, done.to] })); } catch (why) { trouble(told(why)); }
   }

@@ -93,7 +93,7 @@ fn agent(
         let problem = format!("{} has neither a path nor a track, so it begins nowhere", human.id);
         return Err(Unusable::new("paths.json humans", problem, "export a bundle with paths"));
     };
-    // Who stands has the place where they stand as goal.
+    // The goal of somebody who stands is their place.
     let goals: Vec<Point> =
         if way.len() > 1 { way.iter().skip(1).copied().collect() } else { vec![Point::new(start.x, start.y)] };
     let goals = goals.iter().enumerate().map(|(place, at)| GoalEntry {
