@@ -83,6 +83,31 @@ fn a_person_may_send_the_proposal_back_or_change_it() {
 }
 
 #[test]
+fn a_proposal_that_is_made_again_is_told_how_the_request_is_read_after_what_the_person_changed() {
+    let mut world = looked_at("a");
+    let proposal = world.grant("w", Stage::Proposal);
+    let read = left(Role::Reading, b"read by the author");
+    let mut report = success(&proposal);
+    report.artifacts.push(read.clone());
+    world.send_report(report);
+    let review = world.grant("person", Stage::Review);
+    assert_eq!(review.spec.inputs[&Role::Reading], read.digest);
+    let (mine, wish) = (left(Role::Proposal, b"mine"), left(Role::Reading, b"read, with a wish"));
+    let anew = anew(Stage::Proposal, "no child");
+    world.send_report(Report { artifacts: vec![mine.clone(), wish.clone()], anew, ..success(&review) });
+    let again = world.grant("w", Stage::Proposal);
+    assert_eq!(again.spec.inputs[&Role::Reading], wish.digest);
+    assert_eq!(again.spec.refused, Some(mine.digest), "what the person left is what is made again");
+    let mut report = success(&again);
+    report.artifacts.push(left(Role::Reading, b"read again"));
+    world.send_report(report);
+    let review = world.grant("person", Stage::Review);
+    world.send_report(Report { anew: self::anew(Stage::Proposal, "slower"), ..success(&review) });
+    let again = world.grant("w", Stage::Proposal);
+    assert_eq!(again.spec.inputs[&Role::Reading], left(Role::Reading, b"read again").digest);
+}
+
+#[test]
 fn a_person_may_have_one_stage_made_again_and_keep_the_others() {
     let mut world = looked_at("a");
     world.pass(Stage::Proposal);

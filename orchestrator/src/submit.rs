@@ -229,7 +229,8 @@ impl Turn<'_> {
         let mut sources: BTreeMap<Role, JobKey> = written.collect();
         // An author may read the request itself, and a person's wishes may change what it is read as; the next proposal is told of it.
         let is_told = |teller: &JobKey| {
-            key.stage != Stage::Proposal || self.job(teller).is_some_and(|job| job.state == JobState::Succeeded)
+            // The look that asks for another proposal has its result before it ends.
+            key.stage != Stage::Proposal || self.job(teller).is_some_and(|job| job.result.is_some())
         };
         let teller = self.writer(key, Stage::Proposal).filter(is_told);
         sources.extend(teller.map(|teller| (Role::Reading, teller)));

@@ -280,6 +280,10 @@ mod tests {
             assert!(!edited.done.is_empty(), "{words}: {:?}", edited.not_done);
             let faults = socrates_checks::check_proposal(&edited.draft.proposal, &edited.reading, &location);
             assert_eq!(socrates_model::fault::hard(&faults), [], "{words}");
+            let refused = Some(serde_json::to_string(&edited.draft.proposal).unwrap());
+            let shown = again(&Question { reading: edited.reading, refused, ..asked.clone() });
+            let account = shown.unwrap_or_else(|| panic!("{words}")).account.unwrap();
+            assert_eq!(account.len(), 4, "{words}: {account:?}");
         }
     }
 
