@@ -40,7 +40,7 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
     if faults.is_empty() {
         for (clause, finding) in judged.deciding() {
             if matches!(finding.standing, Standing::NotTriggered | Standing::Fails | Standing::Late) {
-                let (stage, fault) = fault_of(clause, finding, has_rule(evidence, clause));
+                let Some((stage, fault)) = fault_in(evidence, judged, clause, finding) else { continue };
                 let left = finding.first_s().filter(|_| fault.code == FaultCode::DGroup);
                 faults.push(match left.and_then(|t| left_by_rule(evidence, clause, t)) {
                     Some((human, act)) => {
@@ -121,6 +121,35 @@ const fn leads_away(act: &Action) -> bool {
         | Action::ChangePace(_)
         | Action::MakeRoom => false,
     }
+}
+
+/// What is wrong with a clause that was missed. Of an order, what is wrong with the part that was never seen: nothing of its own where that
+/// part decides as well, since it is told of itself then. Where both parts came the other way round, whoever wrote what people do can mend
+/// an order of their deeds, and paths any other.
+fn fault_in(
+    evidence: &Evidence<'_>,
+    judged: &Judged,
+    clause: &Clause,
+    finding: &Finding,
+) -> Option<(Stage, Fault)> {
+    let of_itself = |clause: &Clause, finding: &Finding| fault_of(clause, finding, has_rule(evidence, clause));
+    let Predicate::Order { first, then } = &clause.predicate else { return Some(of_itself(clause, finding)) };
+    let part = |id: &String| judged.clauses.iter().find(|(clause, _)| clause.id == *id);
+    let parts = [part(first), part(then)];
+    let unseen = |finding: &Finding| matches!(finding.standing, Standing::NotTriggered | Standing::Fails);
+    if let Some((part, found)) = parts.into_iter().flatten().find(|(_, found)| unseen(found)) {
+        if judged.deciding().any(|(clause, _)| clause.id == part.id) {
+            return None;
+        }
+        let (stage, fault) = of_itself(part, found);
+        let message = format!("clause {} (\"{}\") waits for it: {}", clause.id, clause.text, fault.message);
+        return Some((stage, Fault { message: message.into(), ..fault }));
+    }
+    let (_, fault) = of_itself(clause, finding);
+    let deed = |part: Option<&(Clause, Finding)>| {
+        part.is_some_and(|(clause, found)| by_predicate(clause, found, true).1 == Stage::Behaviors)
+    };
+    Some((if parts.into_iter().all(deed) { Stage::Behaviors } else { Stage::Paths }, fault))
 }
 
 /// Code, stage and message of a clause that was missed; `ruled` tells whether its people have a rule for what it tests.

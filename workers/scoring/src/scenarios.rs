@@ -282,6 +282,35 @@ fn a_reaction_whose_trigger_never_comes_goes_to_whoever_can_bring_it_about() {
 }
 
 #[test]
+fn an_order_of_which_a_part_never_came_is_told_of_by_that_part() {
+    let mut case = frontal();
+    let waits = Predicate::Reacts {
+        human: H1,
+        when: vec![Trigger::RobotSays(Gesture::ExcuseMe)],
+        act: Action::GiveWay,
+        within_s: 2.0,
+    };
+    let order = |first: &str, then: &str| Predicate::Order { first: first.into(), then: then.into() };
+    let meets = must("c2", Predicate::EncounterAt { place: PlaceClass::Corridor, nodes: vec![] });
+    case.plan.expected_events = vec![must("c1", waits), meets, must("c3", order("c2", "c1"))];
+    let run = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
+    let told = |case: &Case| {
+        let repair = case.judge(&run).repair.unwrap();
+        let faults: Vec<String> = repair.faults.iter().map(ToString::to_string).collect();
+        (repair.stage, faults.join("\n"))
+    };
+    let (stage, faults) = told(&case);
+    assert_eq!(stage, Stage::Proposal, "{faults}");
+    assert!(faults.contains("clause c1") && !faults.contains("clause c3"), "{faults}");
+
+    // The part decides nothing by itself: the order is told with what is wrong with it.
+    case.plan.expected_events[0].must = false;
+    let (stage, faults) = told(&case);
+    assert_eq!(stage, Stage::Proposal, "{faults}");
+    assert!(faults.contains("waits for it: clause c1") && faults.contains("never says EXCUSE_ME"), "{faults}");
+}
+
+#[test]
 fn a_follower_behind_holds_and_one_ahead_does_not() {
     let follows =
         Predicate::Follows { follower: AgentId::Human(H1), leader: AgentId::Robot, gap_m: [0.5, 3.0], for_s: 6.0 };
