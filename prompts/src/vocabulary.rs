@@ -35,9 +35,9 @@ pub(crate) fn proposal_tables() -> String {
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
          `for`: so many seconds at most, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
-         `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. `within_m`: at most so far; `for_s`: at least so \
-         long; `gap_s`: both there within so many seconds; `by_m`: so much farther; `spread_m`: of two members at most. One test is enough \
-         for a fact of several.\n\
+         `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. Usual values: `within_m` (at most so far) 2.5, \
+         `for_s` (at least so long) 3, `gap_s` (both there within so many seconds) 4, `by_m` (so much farther) 2, `spread_m` (of two members at \
+         most) 1.5, walking 3. One test is enough for a fact of several.\n\
          Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
@@ -302,7 +302,7 @@ fn robot_do() -> Vec<(Value, String)> {
     vec![
         row(&RobotDo::Say(Gesture::ExcuseMe), ""),
         row(&RobotDo::Hold(3.0), "stands so many seconds"),
-        row(&RobotDo::WaitForLeavers, "waits until all who leave are out; `when` it comes to the door, as human_near"),
+        row(&RobotDo::WaitForLeavers, "until all who leave are out; `when` at the door: human_near"),
         row(&RobotDo::Follow(HumanId::new(1)), ""),
         row(&RobotDo::Abreast(HumanId::new(1)), ""),
         row(&RobotDo::Overtake(HumanId::new(1)), "a slower one"),
@@ -354,11 +354,12 @@ fn predicates() -> Vec<Test> {
         setup(
             &Predicate::Reacts { human, when: vec![Trigger::RobotNear(3.0)], act: Action::StandStill, within_s: 2.0 },
             "the action follows the triggers",
-        ),
+        )
+        .by_name(),
         setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it").by_name(),
         setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door").by_name(),
         setup(&Predicate::StaysAside { human }, "stands beside the way, never in it").by_name(),
-        setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door"),
+        setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door").by_name(),
         setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door").by_name(),
         setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near")
             .rarely(),
@@ -368,13 +369,12 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line").by_name(),
         setup(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
-            "one clause (c1, c2, …) before another",
+            "one test before another; c1 is the first in `setup`",
         ),
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: true },
-            "is at its encounter first, or with at_door through the door",
-        )
-        .rarely(),
+            "is first where they meet, as whoever crosses in front; `at_door`: through the door",
+        ),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place",
@@ -384,10 +384,10 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Plausible, "everybody moves as people do").by_name(),
         outcome(&Predicate::RobotArrives, "the robot gets to its goal").by_name(),
         outcome(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance"),
-        outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out"),
-        outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in"),
-        outcome(&Predicate::RobotJoins { group }, "the robot ends at the rim of the group"),
-        outcome(&Predicate::RobotLeavesGroup { group }, "the robot begins at the group, ends away"),
+        outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out").by_name(),
+        outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in").by_name(),
+        outcome(&Predicate::RobotJoins { group }, "the robot ends at its rim"),
+        outcome(&Predicate::RobotLeavesGroup { group }, "the robot begins at it"),
         outcome(&Predicate::RobotObeys { gesture: Gesture::Wait, within_s: 2.0 }, "the robot stops on the gesture"),
     ]
 }

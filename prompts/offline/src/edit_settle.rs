@@ -38,7 +38,7 @@ pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) 
         } else if !old.is_empty() && alone && proposal.description.contains(&old) {
             proposal.description = proposal.description.replacen(&old, &new, 1);
         } else if !proposal.description.contains(&line) {
-            proposal.description = format!("{} {line}", proposal.description.trim_end());
+            proposal.description = told_anew(&proposal.description, human.id, &line);
         }
     }
     proposal::hear(&mut proposal.robot.script, &proposal.humans);
@@ -80,6 +80,21 @@ pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) 
     reading.facts.retain(|fact| {
         !matches!(fact.kind, FactKind::Asked { .. }) || served(proposal, &fact.id) || !served(before, &fact.id)
     });
+}
+
+/// A description with this line of somebody in place of the one that it has; at its end where it has none.
+fn told_anew(description: &str, who: HumanId, line: &str) -> String {
+    let name = format!("{who}: ");
+    let Some((before, after)) = description.split_once(&name) else {
+        return format!("{} {line}", description.trim_end());
+    };
+    // Another one's line begins with their name.
+    let next = after.match_indices("human_").find(|(at, _)| {
+        let rest = after.get(at + "human_".len()..).unwrap_or_default();
+        rest.trim_start_matches(|c: char| c.is_ascii_digit()).starts_with(": ") && !rest.starts_with(": ")
+    });
+    let rest = next.and_then(|(at, _)| after.get(at..)).unwrap_or_default();
+    format!("{before}{line} {rest}").trim_end().to_owned()
 }
 
 /// Clauses of a human who changed are written anew. Those that show what an author read of the request itself stay, as long as the human still
@@ -240,5 +255,18 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             None if guided => reading.humans.push(read),
             None => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_somebody_takes_the_place_of_their_last_one() {
+        let told = |text: &str| told_anew(text, HumanId::new(1), "human_1: waits.");
+        assert_eq!(told("Two meet."), "Two meet. human_1: waits.");
+        assert_eq!(told("Two meet. human_1: goes on. human_2: looks."), "Two meet. human_1: waits. human_2: looks.");
+        assert_eq!(told("human_1: goes on with human_2."), "human_1: waits.");
     }
 }

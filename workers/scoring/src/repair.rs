@@ -126,12 +126,7 @@ const fn leads_away(act: &Action) -> bool {
 /// What is wrong with a clause that was missed. Of an order, what is wrong with the part that was never seen: nothing of its own where that
 /// part decides as well, since it is told of itself then. Where both parts came the other way round, whoever wrote what people do can mend
 /// an order of their deeds, and paths any other.
-fn fault_in(
-    evidence: &Evidence<'_>,
-    judged: &Judged,
-    clause: &Clause,
-    finding: &Finding,
-) -> Option<(Stage, Fault)> {
+fn fault_in(evidence: &Evidence<'_>, judged: &Judged, clause: &Clause, finding: &Finding) -> Option<(Stage, Fault)> {
     let of_itself = |clause: &Clause, finding: &Finding| fault_of(clause, finding, has_rule(evidence, clause));
     let Predicate::Order { first, then } = &clause.predicate else { return Some(of_itself(clause, finding)) };
     let part = |id: &String| judged.clauses.iter().find(|(clause, _)| clause.id == *id);

@@ -13,7 +13,7 @@ use socrates_offline::{Draft, edit};
 use socrates_prompts::Question;
 
 use super::command::{Command, stage as stage_named};
-use super::keep::kept;
+use super::keep::{Shown, kept};
 use super::log::{Log, MADE, MADE_AGAIN};
 use super::version::{Version, broken, lines, named};
 use crate::exit::Complaint;
@@ -107,9 +107,10 @@ pub(super) struct Decision {
 pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> Result<Option<Decision>, Complaint> {
     let how = if look.reasons.is_empty() { MADE } else { MADE_AGAIN };
     let edits = log.edits();
+    let shown = if look.author == AuthorSpec::Offline { Shown::Nothing } else { Shown::Changes };
     let before = log.begin(&look.job, look.came.clone(), how);
     if let (About::Proposal, MADE_AGAIN, Some(_), Some((base, mine))) = (look.about, how, &before, edits)
-        && let Some(version) = kept(&look.question, &base, &mine, &look.came)
+        && let Some(version) = kept(&look.question, &base, &mine, &look.came, shown)
     {
         log.push("what you had changed, kept", version);
     }

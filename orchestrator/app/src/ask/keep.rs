@@ -1,4 +1,7 @@
 //! What a person changed in a proposal is kept when it is made again: it is put onto the new one.
+//!
+//! An author that writes from the request alone knows nothing of the changes: they win. A model was shown what the person left: where
+//! it says something new, that is its answer to the person; where it fell back to its own former words, the change is put back.
 
 use socrates_model::{HumanProposal, Proposal};
 use socrates_offline::{Draft, settled};
@@ -6,10 +9,25 @@ use socrates_prompts::Question;
 
 use super::version::Version;
 
+/// Whether the author saw what the person had changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// It wrote from the request alone.
+    Nothing,
+    /// It was shown what the person left.
+    Changes,
+}
+
 /// The new version with what the person changed: the difference of `mine` to `base`, which the author had made. Nothing
 /// where there is none, or where the new version has it already.
-pub(super) fn kept(question: &Question, base: &Version, mine: &Version, came: &Version) -> Option<Version> {
-    let (proposal, changed) = merged(&base.proposal, &mine.proposal, &came.proposal);
+pub(super) fn kept(
+    question: &Question,
+    base: &Version,
+    mine: &Version,
+    came: &Version,
+    shown: Shown,
+) -> Option<Version> {
+    let (proposal, changed) = merged(&base.proposal, &mine.proposal, &came.proposal, shown);
     if proposal == came.proposal {
         return None;
     }
@@ -22,23 +40,23 @@ pub(super) fn kept(question: &Question, base: &Version, mine: &Version, came: &V
 }
 
 /// The new proposal with the person's changes, and the places of those whose part they change.
-fn merged(base: &Proposal, mine: &Proposal, came: &Proposal) -> (Proposal, Vec<usize>) {
+fn merged(base: &Proposal, mine: &Proposal, came: &Proposal, shown: Shown) -> (Proposal, Vec<usize>) {
     let mut new = came.clone();
     let mut changed = Vec::new();
-    take(&mut new.title, &base.title, &mine.title);
-    take(&mut new.place, &base.place, &mine.place);
-    take(&mut new.robot.script, &base.robot.script, &mine.robot.script);
-    take(&mut new.robot.start, &base.robot.start, &mine.robot.start);
-    take(&mut new.robot.goal, &base.robot.goal, &mine.robot.goal);
+    take(shown, &mut new.title, &base.title, &mine.title);
+    take(shown, &mut new.place, &base.place, &mine.place);
+    take(shown, &mut new.robot.script, &base.robot.script, &mine.robot.script);
+    take(shown, &mut new.robot.start, &base.robot.start, &mine.robot.start);
+    take(shown, &mut new.robot.goal, &base.robot.goal, &mine.robot.goal);
     for (place, (own, now)) in mine.humans.iter().zip(&mut new.humans).enumerate() {
         let Some(old) = before(base, mine, place) else { continue };
         let was = now.clone();
-        take(&mut now.role, &old.role, &own.role);
-        take(&mut now.relation, &old.relation, &own.relation);
-        take(&mut now.rules, &old.rules, &own.rules);
-        take(&mut now.speed_mps, &old.speed_mps, &own.speed_mps);
-        take(&mut now.start, &old.start, &own.start);
-        take(&mut now.goal, &old.goal, &own.goal);
+        take(shown, &mut now.role, &old.role, &own.role);
+        take(shown, &mut now.relation, &old.relation, &own.relation);
+        take(shown, &mut now.rules, &old.rules, &own.rules);
+        take(shown, &mut now.speed_mps, &old.speed_mps, &own.speed_mps);
+        take(shown, &mut now.start, &old.start, &own.start);
+        take(shown, &mut now.goal, &old.goal, &own.goal);
         if *now != was {
             changed.push(place);
         }
@@ -48,7 +66,8 @@ fn merged(base: &Proposal, mine: &Proposal, came: &Proposal) -> (Proposal, Vec<u
         new.humans.push(own.clone());
         changed.push(place);
     }
-    if mine.groups != base.groups && mine.humans.len() == new.humans.len() {
+    let answered = shown == Shown::Changes && new.groups != base.groups;
+    if mine.groups != base.groups && !answered && mine.humans.len() == new.humans.len() {
         new.groups.clone_from(&mine.groups);
         for (own, now) in mine.humans.iter().zip(&mut new.humans) {
             now.group = own.group;
@@ -67,9 +86,10 @@ fn before<'a>(base: &'a Proposal, mine: &Proposal, place: usize) -> Option<&'a H
     base.humans.iter().skip(place).find(|old| old.role == own.role && old.relation == own.relation)
 }
 
-/// Takes what the person changed.
-fn take<T: PartialEq + Clone>(new: &mut T, base: &T, mine: &T) {
-    if mine != base {
+/// Takes what the person changed, unless an author that saw it says something new.
+fn take<T: PartialEq + Clone>(shown: Shown, new: &mut T, base: &T, mine: &T) {
+    let answered = shown == Shown::Changes && new != base;
+    if mine != base && !answered {
         new.clone_from(mine);
     }
 }

@@ -348,6 +348,23 @@ fn what_was_changed_is_kept_when_the_proposal_is_made_again() {
 }
 
 #[test]
+fn what_a_model_answers_to_what_was_changed_stands_and_what_it_dropped_is_put_back() {
+    let first = Look { author: "openai:m".parse().unwrap(), ..look(About::Proposal) };
+    let lines = ["slow down the visitor", "the robot should say excuse me", "again let her stand for longer"];
+    let (decision, mut log) = talk(&first, &mut Script::of(&lines));
+    let mine = decision.unwrap().left;
+    let mut second = Look { job: "again".to_owned(), ..first.clone() };
+    second.reasons = vec![Fault::new(FaultCode::PPerson, Stage::Proposal, "let her stand for longer")];
+    second.came.reading = mine.reading.clone();
+    // It says another pace than the person and dropped the robot's words.
+    second.came.proposal.humans[0].speed_mps = Some(0.5);
+    let mut person = Script::of(&["accept"]);
+    let left = converse(&second, &mut log, &mut person).unwrap().unwrap().left;
+    assert_eq!(left.proposal.humans[0].speed_mps, Some(0.5), "{}", person.text());
+    assert_eq!(left.proposal.robot.script, mine.proposal.robot.script, "{}", person.text());
+}
+
+#[test]
 fn no_words_are_both_done_and_not_done() {
     let look = look(About::Draft);
     for words in [
