@@ -346,7 +346,7 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way").by_name(),
         setup(
             &Predicate::Looks { human, for_s: 2.0 },
-            "stands and looks at the robot; `for_s` about half of its rule's `for`",
+            "stands and looks at it; `for_s` half of its rule's `for`",
         ),
         setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still").by_name(),
         setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot").by_name(),
@@ -373,7 +373,7 @@ fn predicates() -> Vec<Test> {
         ),
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: true },
-            "is first where they meet, as whoever crosses in front; `at_door`: through the door",
+            "is first where they meet (crosses in front) or, `at_door`, through the door",
         ),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
