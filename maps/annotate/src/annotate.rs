@@ -434,6 +434,14 @@ fn doubts(floor: &Floor, regions: &Regions, made: &Annotation, remarks: &mut Vec
             format!("an opening of {:.2} m is taken for a doorway with little confidence", passage.throat.width_m);
         remarks.push(Remark::new(RemarkKind::Doubtful, Some(passage.throat.middle()), text));
     }
+    let tight = regions.passages.iter().filter(|passage| passage.throat.width_m <= 2.0 * BODY_M + floor.cell_m);
+    for passage in tight.take(NAMED_MOST) {
+        let text = format!(
+            "an opening of {:.2} m leaves a robot of {BODY_M} m radius no room: no robot of that size is sent through it",
+            passage.throat.width_m
+        );
+        remarks.push(Remark::new(RemarkKind::Gap, Some(passage.throat.middle()), text));
+    }
     for gap in regions.gaps.iter().take(NAMED_MOST) {
         let text = format!(
             "an opening of {:.2} m is too narrow for a robot of {BODY_M} m radius and has no nodes",

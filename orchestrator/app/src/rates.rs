@@ -156,8 +156,8 @@ pub fn rate(talk: &Printer, options: &RateOptions) -> Result<(), Complaint> {
 /// What is wrong where no card fits any of the places.
 fn nothing_fits(cards: &[&'static Card], places: &[Place]) -> Complaint {
     let ids: Vec<String> = cards.iter().map(|card| format!("`{}`", card.id)).collect();
-    let found: Vec<&str> = cards.iter().flat_map(|card| fitting(card)).collect();
-    let hint = format!("{} fits: {}", ids.first().map_or("", String::as_str), found.join(", "));
+    let found = cards.first().map_or_else(Vec::new, |card| fitting(card));
+    let hint = format!("{} fits {}", ids.first().map_or("", String::as_str), found.join(", "));
     let mut complaint = Complaint::input(format!("{} fits no location that was named", ids.join(", ")), hint);
     let reasons = cards.iter().flat_map(|card| {
         places.iter().filter_map(move |place| {
