@@ -19,6 +19,11 @@ const TRACKS: &str = include_str!("exports/tracks.py");
 /// Formats of tracks that are read by [`TRACKS`], with the largest distance from the run, m: half a digit and that of the table.
 const TRACK_FORMATS: [(&str, f64); 4] =
     [("trajnet", 0.0072), ("eth-ucy", 0.000_1), ("pedpy", 0.000_1), ("jupedsim-2", 0.000_1)];
+/// Readers of bags, and what they find, beside the table of the run.
+const BAG_READERS: [&str; 3] = ["rosbags==0.11.9", "mcap-ros2-support==0.6.0", "numpy"];
+const BAGS: &str = include_str!("exports/bags.py");
+/// Formats of bags that are read by [`BAGS`].
+const BAG_FORMATS: [&str; 1] = ["rosbag2-5"];
 /// Formats of worlds that are read by [`SDF_MAIN`].
 const WORLD_FORMATS: [&str; 1] = ["sdf-1.6"];
 
@@ -43,7 +48,7 @@ fn the_formats_that_the_page_calls_parsed_are_those_that_are_read_here() {
         let rows = page.lines().filter(|line| line.starts_with("| `") && line.contains(&format!(" | {word} | ")));
         rows.map(|row| row.split('`').nth(1).unwrap().to_owned()).collect()
     };
-    let read = TRACK_FORMATS.map(|(format, _)| format).into_iter().chain(WORLD_FORMATS).map(str::to_owned);
+    let read = TRACK_FORMATS.map(|(format, _)| format).into_iter().chain(WORLD_FORMATS).chain(BAG_FORMATS).map(str::to_owned);
     assert_eq!(of("parsed"), read.collect::<BTreeSet<String>>());
     assert_eq!(of("run"), BTreeSet::new(), "no simulator of others runs in these tests");
 }
@@ -74,6 +79,32 @@ fn readers_of_tracks_find_the_positions_of_the_run() {
         found["trajnet"]["scenes"].as_u64().unwrap() > 0 && found["jupedsim-2"]["area"].as_f64().unwrap() > 10.0,
         "{found}"
     );
+}
+
+#[test]
+fn two_readers_of_bags_find_the_positions_of_the_run_and_so_does_ours() {
+    let python = skip::installed(python("bag-readers", &BAG_READERS, "import rosbags, mcap_ros2"));
+    let Some(python) = python else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let (made, _) = make(at, "hall", WAREHOUSE, &[]);
+    assert!(matches!(made.code, 0 | 3), "{}", made.err);
+    for format in BAG_FORMATS {
+        export(at, "bundle-hall", format);
+        let bag = format!("out/{format}/bag");
+        let mut reads = Command::new(&python);
+        reads.args(["-c", BAGS, &bag, "bundle-hall/agents.csv"]).current_dir(at).stdin(Stdio::null());
+        let out = reads.output().unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        let found: Value = serde_json::from_slice(&out.stdout).unwrap();
+        let (positions, off) = (found["positions"].as_u64().unwrap(), found["off"].as_f64().unwrap());
+        assert!(positions > 100 && off <= 0.000_1, "{found}");
+        assert_eq!(found["messages"], found["others"], "{found}");
+        assert_eq!(found["topics"].as_array().unwrap().len(), 11, "{found}");
+        assert!(found["scans"].as_u64().unwrap() > 50 && found["nearest"].as_f64().unwrap() > 0.0, "{found}");
+        let scored = socrates(at, "scored", &["score", &bag, "--out", "scored"]);
+        assert_eq!(scored.code, 0, "{}", scored.err);
+    }
 }
 
 /// A program around a reader of SDF that others wrote: what it finds in each file, a line each.

@@ -15,6 +15,7 @@ mod jupedsim;
 mod map_files;
 mod outline;
 mod pedpy;
+mod rosbag;
 mod sdf;
 mod socnav3;
 mod trajnet;
@@ -122,6 +123,7 @@ pub const FORMATS: &[Format] = &[
     jupedsim::FORMAT,
     socnav3::FORMAT,
     sdf::FORMAT,
+    rosbag::FORMAT,
     hunav::HUNAV_1_0,
     hunav::HUNAV_1_1,
     hunav::HUNAV_2_0,
