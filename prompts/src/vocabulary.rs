@@ -36,7 +36,7 @@ pub(crate) fn proposal_tables() -> String {
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
          `for`: so many seconds at most, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
          `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. Usual values: `within_m` (at most so far) 2.5, \
-         `for_s` (at least so long) 3, `gap_s` (both there within so many seconds) 4, `by_m` (so much farther) 2, `spread_m` (of two members at \
+         `for_s` (at least so long; half of its rule's `for`) 3, `gap_s` (both there within so many seconds) 4, `by_m` (so much farther) 2, `spread_m` (of two members at \
          most) 1.5, walking 3. One test is enough for a fact of several.\n\
          Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
@@ -99,6 +99,8 @@ pub(crate) fn test_in_words(test: &Value) -> Option<String> {
     };
     let wanted = name(test)?;
     let meaning = predicates().into_iter().find(|row| name(&row.form).as_ref() == Some(&wanted))?.meaning;
+    // What is behind the semicolon is for authors.
+    let meaning = meaning.split(';').next().unwrap_or(meaning);
     let line = terse::line(test);
     let values = line.split_once(' ').map_or_else(String::new, |(_, values)| format!(" ({values})"));
     Some(format!("{meaning}{values}"))
@@ -344,10 +346,7 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once").rarely(),
         setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time").rarely(),
         setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way").by_name(),
-        setup(
-            &Predicate::Looks { human, for_s: 2.0 },
-            "stands and looks at it; `for_s` half of its rule's `for`",
-        ),
+        setup(&Predicate::Looks { human, for_s: 2.0 }, "stands and looks at it"),
         setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still").by_name(),
         setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot").by_name(),
         setup(&Predicate::GivesWay { human }, "leaves the robot's way free").by_name(),
@@ -369,11 +368,11 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line").by_name(),
         setup(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
-            "one test before another; c1 is the first in `setup`",
+            "one test before another; c1 leads `setup`",
         ),
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: true },
-            "is first where they meet (crosses in front) or, `at_door`, through the door",
+            "is first where they meet; crosses in front, or `at_door`: through the door",
         ),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },

@@ -48,7 +48,8 @@ fn the_formats_that_the_page_calls_parsed_are_those_that_are_read_here() {
         let rows = page.lines().filter(|line| line.starts_with("| `") && line.contains(&format!(" | {word} | ")));
         rows.map(|row| row.split('`').nth(1).unwrap().to_owned()).collect()
     };
-    let read = TRACK_FORMATS.map(|(format, _)| format).into_iter().chain(WORLD_FORMATS).chain(BAG_FORMATS).map(str::to_owned);
+    let read =
+        TRACK_FORMATS.map(|(format, _)| format).into_iter().chain(WORLD_FORMATS).chain(BAG_FORMATS).map(str::to_owned);
     assert_eq!(of("parsed"), read.collect::<BTreeSet<String>>());
     assert_eq!(of("run"), BTreeSet::new(), "no simulator of others runs in these tests");
 }

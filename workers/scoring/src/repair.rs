@@ -125,7 +125,7 @@ const fn leads_away(act: &Action) -> bool {
 
 /// What is wrong with a clause that was missed. Of an order, what is wrong with the part that was never seen: nothing of its own where that
 /// part decides as well, since it is told of itself then. Where both parts came the other way round, whoever wrote what people do can mend
-/// an order of their deeds, and paths any other.
+/// an order with a deed in it, and paths any other.
 fn fault_in(evidence: &Evidence<'_>, judged: &Judged, clause: &Clause, finding: &Finding) -> Option<(Stage, Fault)> {
     let of_itself = |clause: &Clause, finding: &Finding| fault_of(clause, finding, has_rule(evidence, clause));
     let Predicate::Order { first, then } = &clause.predicate else { return Some(of_itself(clause, finding)) };
@@ -144,7 +144,7 @@ fn fault_in(evidence: &Evidence<'_>, judged: &Judged, clause: &Clause, finding: 
     let deed = |part: Option<&(Clause, Finding)>| {
         part.is_some_and(|(clause, found)| by_predicate(clause, found, true).1 == Stage::Behaviors)
     };
-    Some((if parts.into_iter().all(deed) { Stage::Behaviors } else { Stage::Paths }, fault))
+    Some((if parts.into_iter().any(deed) { Stage::Behaviors } else { Stage::Paths }, fault))
 }
 
 /// Code, stage and message of a clause that was missed; `ruled` tells whether its people have a rule for what it tests.

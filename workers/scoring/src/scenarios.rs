@@ -311,6 +311,30 @@ fn an_order_of_which_a_part_never_came_is_told_of_by_that_part() {
 }
 
 #[test]
+fn nobody_behind_a_wall_stands_aside_or_is_passed() {
+    let run = recording(&[robot(), Walk::human(1, 0., 1.6, 0., 0.)], 20.0, 0.01);
+    let judged = |walls: &[(f64, f64, f64, f64)], predicate: Predicate| {
+        let mut case = frontal();
+        case.place = floor(
+            walls,
+            &[("a", "CORRIDOR", -8., 0.), ("m", "CORRIDOR", 0., 0.), ("b", "CORRIDOR", 8., 0.)],
+            &[("a", "m"), ("m", "b")],
+        );
+        case.plan.humans[0].relation = Relation::Aside;
+        case.plan.expected_events = vec![must("c1", predicate)];
+        let report = case.judge(&run);
+        report.clauses.into_iter().find(|clause| clause.id == "c1").unwrap()
+    };
+    for predicate in [Predicate::StaysAside { human: H1 }, Predicate::RobotPasses { human: H1 }] {
+        let open = judged(&[(-9., 2.4, 9., 2.5)], predicate.clone());
+        assert_eq!(open.standing, Standing::Holds, "{}", open.evidence);
+        let behind = judged(&[(-9., 0.9, 9., 1.0)], predicate);
+        assert_ne!(behind.standing, Standing::Holds, "{}", behind.evidence);
+        assert!(behind.evidence.contains("a wall is between"), "{}", behind.evidence);
+    }
+}
+
+#[test]
 fn a_follower_behind_holds_and_one_ahead_does_not() {
     let follows =
         Predicate::Follows { follower: AgentId::Human(H1), leader: AgentId::Robot, gap_m: [0.5, 3.0], for_s: 6.0 };

@@ -48,12 +48,12 @@ impl Command {
             "map" | "m" if alone => Self::Map,
             "diff" | "d" if alone => Self::Diff,
             "quit" | "q" | "exit" | "leave" if alone => Self::Quit,
-            "reject" | "r" | "no" | "n" if alone || first == "reject" => Self::Again(None, rest.to_owned()),
+            "reject" | "r" | "no" | "n" if alone || first == "reject" => Self::Again(None, reason(rest)),
             "again" | "regenerate" => {
                 let (word, why) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
                 match stage(word.trim_end_matches([':', ','])) {
-                    Some(stage) => Self::Again(Some(stage), why.trim().to_owned()),
-                    None => Self::Again(None, rest.to_owned()),
+                    Some(stage) => Self::Again(Some(stage), reason(why)),
+                    None => Self::Again(None, reason(rest)),
                 }
             }
             "edit" | "e" if alone || stage(rest).is_some() || rest.starts_with("human_") && !rest.contains(' ') => {
@@ -63,6 +63,12 @@ impl Command {
             _ => Self::Words(line.to_owned()),
         }
     }
+}
+
+/// A reason without the word that leads it.
+fn reason(text: &str) -> String {
+    let text = text.trim();
+    text.strip_prefix("because ").unwrap_or(text).trim_start().to_owned()
 }
 
 /// An authoring stage by the names people give it.
@@ -87,6 +93,7 @@ mod tests {
         assert_eq!(Command::read("reject: too crowded"), Command::Again(None, "too crowded".to_owned()));
         assert_eq!(Command::read("again paths, longer"), Command::Again(Some(Stage::Paths), "longer".to_owned()));
         assert_eq!(Command::read("again too crowded"), Command::Again(None, "too crowded".to_owned()));
+        assert_eq!(Command::read("again because it is dull"), Command::Again(None, "it is dull".to_owned()));
         assert_eq!(Command::read("edit human_2"), Command::Edit("human_2".to_owned()));
         assert_eq!(Command::read("take 2"), Command::Take(2));
         for wish in ["make the robot's path longer", "no gestures", "back human_1 off", "edit it so that", "take care"]

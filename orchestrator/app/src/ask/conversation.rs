@@ -402,12 +402,14 @@ impl Conversation<'_> {
         for words in &edited.left_out {
             self.named(Tone::Bad, "left out", &format!("`{words}` was not understood; the rest was done"));
         }
-        for fault in &edited.not_done {
+        // One word is a slip of a command rather than a wish.
+        let nothing = edited.done.is_empty() && edited.draft == draft;
+        let handed_on = nothing && self.look.author != AuthorSpec::Offline && words.split_whitespace().nth(1).is_some();
+        for fault in edited.not_done.iter().filter(|_| !handed_on) {
             self.named(Tone::Bad, "not done", &fault.message.to_string());
         }
-        if edited.done.is_empty() && edited.draft == draft {
-            // One word is a slip of a command rather than a wish.
-            if self.look.author == AuthorSpec::Offline || words.split_whitespace().nth(1).is_none() {
+        if nothing {
+            if !handed_on {
                 return Next::Ask;
             }
             let told = format!("{} is asked: \"{words}\"", self.look.author);

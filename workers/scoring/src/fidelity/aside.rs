@@ -128,9 +128,18 @@ pub(super) fn stays_aside(signals: &Signals<'_>, human: HumanId) -> Finding {
         return found;
     }
     let moments = signals.of(human);
-    let nearest = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
-    let (Some(nearest), Some(first)) = (nearest, moments.first()) else {
+    let near =
+        |of: &dyn Fn(&&Moment) -> bool| moments.iter().filter(of).min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+    let (Some(closest), Some(first)) = (near(&|_| true), moments.first()) else {
         return Finding::not_applicable("the recording is empty");
+    };
+    // Behind a wall nobody is beside the robot's way.
+    let Some(nearest) = near(&|moment| moment.sight != Some(false)) else {
+        let text = format!(
+            "a wall is between {human} and the robot all the time, {:.2} m apart at {:.1} s; who stands aside is seen from its way",
+            closest.distance_m, closest.t
+        );
+        return Finding::never(-1.0, vec![], text);
     };
     let rules = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map_or(&[][..], |one| &one.rules);
     let led =

@@ -361,6 +361,15 @@ pub(super) fn passes_since(signals: &Signals<'_>, human: HumanId, overtakes: boo
         let text = format!("never within {PASS_M:.0} m: closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
         return Finding::never(PASS_M - nearest.distance_m, vec![nearest.t], text);
     }
+    // Nobody passes somebody behind a wall.
+    let near: Vec<&Moment> = near.into_iter().filter(|moment| moment.sight != Some(false)).collect();
+    if near.is_empty() {
+        let text = format!(
+            "a wall is between them whenever they are within {PASS_M:.0} m, {:.1} m at {:.1} s",
+            nearest.distance_m, nearest.t
+        );
+        return Finding::never(-1.0, vec![nearest.t], text);
+    }
     let sign = if overtakes { 1.0 } else { -1.0 };
     let same_way = |moment: &Moment| !overtakes || moment.course_rad <= PI / 4.0 && moment.human.speed() > WALKING_MPS;
     // Largest lead gained after the largest one held on the first side, among moments the same way.

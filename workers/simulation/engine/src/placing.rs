@@ -111,7 +111,7 @@ fn spot(
         !taken.iter().any(close)
             && goal.is_none_or(|goal| (at - goal).norm() >= GOAL_FREE_M)
             && beside.as_ref().is_none_or(|beside| beside.left_m(at) >= BESIDE_LEAST_M)
-            && off_way(human, at, robot)
+            && off_way(human, at, robot, floor)
             && floor.clearance_m(at) >= human.radius_m + MARGIN_M
     };
     let mut best: Option<(f64, Point)> = None;
@@ -220,11 +220,13 @@ fn farther(floor: &Floor, home: &Point, radius_m: f64, free: &dyn Fn(&Point) -> 
     None
 }
 
-/// Whether a place is as far beside the robot's way as somebody stands who is not in it, on their side of it; of others it is not asked.
-fn off_way(human: &Human, at: &Point, robot: Option<&(Pose, &Polyline)>) -> bool {
+/// Whether a place is as far beside the robot's way as somebody stands who is not in it, on their side of it, and with no wall between; of
+/// others it is not asked.
+fn off_way(human: &Human, at: &Point, robot: Option<&(Pose, &Polyline)>, floor: &Floor) -> bool {
     let Some((_, route)) = robot.filter(|_| human.relation == Relation::Aside) else { return true };
     let on_side = |side| Beside { side, route }.left_m(at) > 0.0;
-    route.project(at).1 >= Side::ASIDE_M && human.side.is_none_or(on_side)
+    let (s, away_m) = route.project(at);
+    away_m >= Side::ASIDE_M && human.side.is_none_or(on_side) && floor.sees(at, &route.point(s))
 }
 
 fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
