@@ -62,7 +62,9 @@ pub(crate) fn messages(faults: &[Fault], refused: Option<&str>, example: &str) -
     text.push_str(example);
     match shown {
         Some(answer) => {
-            vec![answer, Message::text(Role::User, format!("This answer is refused:\n{text}{CLOSING}"))]
+            let wished = listed.iter().all(|fault| fault.code == FaultCode::PPerson);
+            let opening = if wished { "A change of this answer is asked for:" } else { "This answer is refused:" };
+            vec![answer, Message::text(Role::User, format!("{opening}\n{text}{CLOSING}"))]
         }
         None => vec![Message::text(Role::User, format!("Earlier answers were refused. Avoid this:\n{text}"))],
     }
@@ -106,6 +108,7 @@ mod tests {
         assert!(
             text.contains("1. The person who ordered the scenario looked at it and says: \"too crowded for a night\"")
         );
+        assert!(text.starts_with("A change of this answer is asked for:"), "{text}");
     }
 
     #[test]

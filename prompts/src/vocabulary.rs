@@ -42,13 +42,18 @@ pub(crate) fn proposal_tables() -> String {
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
         forms(&actions()),
-        Gesture::ALL.iter().map(|gesture| gesture.name()).collect::<Vec<_>>().join(", "),
+        Gesture::ALL.iter().map(|gesture| told_gesture(*gesture)).collect::<Vec<_>>().join(", "),
         short(&relations()),
         listed(&robot_when()),
         listed(&robot_do()),
         tests(setup),
         tests(outcome),
     )
+}
+
+/// A gesture, with what people call it where its name does not say so.
+fn told_gesture(gesture: Gesture) -> String {
+    if gesture == Gesture::Acknowledged { format!("{} (a wave)", gesture.name()) } else { gesture.name().to_owned() }
 }
 
 /// How the humans of a proposal go, by their relations to the robot's way: a line for each that there is.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 use socrates_checks::passing_proposal;
+use socrates_model::FaultCode;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_prompts::{Account, Passing, Question};
@@ -14,7 +15,8 @@ use crate::{account, compiled, paths_by};
 /// The question with an example of what passes, where an answer was refused and the program finds one: the refused proposal made right,
 /// the solver's paths, the trees of the proposal's rules. It has passed the checks itself. None where there is nothing to show.
 pub(crate) fn shown(question: &Question) -> Option<Question> {
-    if question.feedback.is_empty() {
+    // What a person wishes of an answer no check knows.
+    if question.feedback.iter().all(|fault| fault.code == FaultCode::PPerson) {
         return None;
     }
     Some(Question { passing: Some(passing(question)?), ..question.clone() })
