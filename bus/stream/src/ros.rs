@@ -16,7 +16,7 @@
 //! | `rosgraph_msgs/msg/Clock` | the simulator's time, for messages that have none |
 //!
 //! Messages are read by the names of their fields, from the definition that the bag carries. Everybody is placed in `map` by the
-//! bag's transforms; what no transform connects is refused.
+//! bag's transforms; what no transform connects is refused. [`BagPen`] writes the file of a bag whose messages others have made.
 
 mod bag;
 mod cdr;
@@ -25,6 +25,7 @@ mod decode;
 mod fault;
 mod frames;
 mod metadata;
+mod pen;
 mod pick;
 mod rigid;
 mod schema;
@@ -34,6 +35,7 @@ mod tracks;
 pub use bag::Bag;
 pub use fault::{BagFault, CONVERT};
 pub use metadata::files;
+pub use pen::BagPen;
 pub use pick::Choice;
 pub use tracks::Tracks;
 

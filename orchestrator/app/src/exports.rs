@@ -5,9 +5,10 @@ mod sqlite;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use socrates_export::scenario::{File, Format, Package, Scenario};
+use socrates_export::scenario::{Bag, File, Format, Package, Scenario};
 use socrates_export::{Losses, Unusable};
 use socrates_model::Run;
+use socrates_stream::ros::BagPen;
 
 use crate::bundle;
 use crate::cost::bundles_in;
@@ -112,10 +113,29 @@ fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Pa
             File::Text(text) => files::write(&path, text.as_bytes())?,
             File::Bytes(bytes) => files::write(&path, bytes)?,
             File::Database(database) => sqlite::write(&path, database)?,
+            File::Bag(bag) => {
+                let problem = |why: String| Complaint::input(format!("{}: {why}", path.display()), "please report it");
+                files::write(&path, &bag_bytes(bag).map_err(problem)?)?;
+            }
         }
     }
     files::write(&out.join(NOT_CARRIED), list(&package.losses, format).as_bytes())?;
     Ok((package, run))
+}
+
+/// The file of a bag.
+fn bag_bytes(bag: &Bag) -> Result<Vec<u8>, String> {
+    let mut pen = BagPen::new().map_err(|why| why.to_string())?;
+    let mut numbers = Vec::with_capacity(bag.channels.len());
+    for channel in &bag.channels {
+        let number = pen.channel(channel.topic, &channel.kind, &channel.definition, &channel.qos);
+        numbers.push(number.map_err(|why| why.to_string())?);
+    }
+    for message in &bag.messages {
+        let Some(number) = numbers.get(message.channel) else { continue };
+        pen.send(*number, message.nanos, &message.data).map_err(|why| why.to_string())?;
+    }
+    pen.finish().map_err(|why| why.to_string())
 }
 
 /// The list of losses as a file.

@@ -26,6 +26,7 @@ use socrates_model::{AgentId, Behaviors, Location, Paths, Proposal, Recording};
 
 pub use self::content::Content;
 pub use self::jupedsim::{Database, Table, Value};
+pub use self::rosbag::{Bag, Channel, Message};
 use crate::graph::Unusable;
 use crate::not_carried::Losses;
 
@@ -57,6 +58,8 @@ pub enum File {
     Bytes(Vec<u8>),
     /// Tables of a database of SQLite, which the shell writes.
     Database(Database),
+    /// Messages of a bag of ROS 2, which the shell writes as MCAP.
+    Bag(Bag),
 }
 
 /// Files by their path in the package.

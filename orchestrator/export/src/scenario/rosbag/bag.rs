@@ -1,10 +1,5 @@
-//! The file of a bag and its `metadata.yaml`, as rosbag2 of ROS 2 Humble writes them (version 5); newer ones read that.
+//! The messages of a bag and its `metadata.yaml`, as rosbag2 of ROS 2 Humble writes it (version 5); newer ones read that.
 
-use std::collections::BTreeMap;
-use std::io::Cursor;
-
-use mcap::records::MessageHeader;
-use mcap::{Compression, WriteOptions, Writer};
 use serde::Serialize;
 
 use super::cdr::Cdr;
@@ -48,79 +43,85 @@ impl Topic {
     }
 }
 
-/// A bag as it is written.
-pub(super) struct Bag {
-    writer: Writer<Cursor<Vec<u8>>>,
-    /// Channel, topic and number of messages, by the topic's name.
-    topics: BTreeMap<&'static str, (u16, Topic, u64)>,
-    /// Times of the first and the last message, ns.
-    times: Option<(u64, u64)>,
+/// The messages of a bag, which the shell writes as MCAP.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Bag {
+    /// Topics in the order of their first messages.
+    pub channels: Vec<Channel>,
+    /// Messages in the order of their times.
+    pub messages: Vec<Message>,
 }
 
-fn broken(why: mcap::McapError) -> Unusable {
-    Unusable::new("recording", format!("the bag cannot be written: {why}"), "export a shorter run")
+/// A topic of a bag.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Channel {
+    /// Name of the topic.
+    pub topic: &'static str,
+    /// Type as ROS 2 writes it: `nav_msgs/msg/Odometry`.
+    pub kind: String,
+    /// Definition of the type in the encoding `ros2msg`.
+    pub definition: String,
+    /// Quality of service as YAML, as rosbag2 notes it.
+    pub qos: String,
+}
+
+/// A message of a bag.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Place of its topic among the channels.
+    pub channel: usize,
+    /// When, ns.
+    pub nanos: u64,
+    /// Its bytes in CDR.
+    pub data: Vec<u8>,
 }
 
 impl Bag {
-    pub(super) fn new() -> Result<Self, Unusable> {
-        let options = WriteOptions::new().compression(Some(Compression::Zstd)).profile("ros2");
-        let writer = options.create(Cursor::new(Vec::new())).map_err(broken)?;
-        Ok(Self { writer, topics: BTreeMap::new(), times: None })
-    }
-
     /// Adds a message so many nanoseconds after the first tick.
-    pub(super) fn send(&mut self, topic: Topic, nanos: u64, message: Cdr) -> Result<(), Unusable> {
-        if !self.topics.contains_key(topic.name) {
-            let text = definition(topic.kind);
-            let schema = self.writer.add_schema(&topic.full_kind(), "ros2msg", text.as_bytes()).map_err(broken)?;
-            let notes = BTreeMap::from([("offered_qos_profiles".to_owned(), topic.qos())]);
-            let channel = self.writer.add_channel(schema, topic.name, "cdr", &notes).map_err(broken)?;
-            self.topics.insert(topic.name, (channel, topic, 0));
-        }
-        let Some((channel, _, count)) = self.topics.get_mut(topic.name) else { return Ok(()) };
-        let log_time = BEGIN_NANOS.saturating_add(nanos);
-        let sequence = u32::try_from(*count).unwrap_or(u32::MAX);
-        let header = MessageHeader { channel_id: *channel, sequence, log_time, publish_time: log_time };
-        *count += 1;
-        self.times =
-            Some(self.times.map_or((log_time, log_time), |(first, last)| (first.min(log_time), last.max(log_time))));
-        self.writer.write_to_known_channel(&header, &message.bytes()).map_err(broken)
+    pub(super) fn send(&mut self, topic: Topic, nanos: u64, message: Cdr) {
+        let known = self.channels.iter().position(|channel| channel.topic == topic.name);
+        let channel = known.unwrap_or_else(|| {
+            let (kind, definition, qos) = (topic.full_kind(), definition(topic.kind), topic.qos());
+            self.channels.push(Channel { topic: topic.name, kind, definition, qos });
+            self.channels.len() - 1
+        });
+        self.messages.push(Message { channel, nanos: BEGIN_NANOS.saturating_add(nanos), data: message.bytes() });
     }
 
-    /// The file, and the text of `metadata.yaml` for a file of this name.
-    pub(super) fn finish(mut self, file: &str) -> Result<(Vec<u8>, String), Unusable> {
-        self.writer.finish().map_err(broken)?;
-        let (first, last) = self.times.unwrap_or((BEGIN_NANOS, BEGIN_NANOS));
-        let count = self.topics.values().map(|(_, _, count)| count).sum();
+    /// The text of `metadata.yaml` for a file of this name.
+    pub(super) fn metadata(&self, file: &str) -> Result<String, Unusable> {
+        let times = || self.messages.iter().map(|message| message.nanos);
+        let first = times().min().unwrap_or(BEGIN_NANOS);
+        let count = |wanted: usize| self.messages.iter().filter(|message| message.channel == wanted).count();
         let span = Span {
-            duration: Nanos { nanoseconds: last - first },
+            duration: Nanos { nanoseconds: times().max().unwrap_or(first) - first },
             starting_time: Since { nanoseconds_since_epoch: first },
         };
-        let topic = |(_, topic, count): &(u16, Topic, u64)| Counted {
+        let topic = |(number, channel): (usize, &Channel)| Counted {
             topic_metadata: Told {
-                name: topic.name,
-                r#type: topic.full_kind(),
+                name: channel.topic,
+                r#type: channel.kind.clone(),
                 serialization_format: "cdr",
-                offered_qos_profiles: topic.qos(),
+                offered_qos_profiles: channel.qos.clone(),
             },
-            message_count: *count,
+            message_count: count(number),
         };
+        let message_count = self.messages.len();
         let metadata = Metadata {
             rosbag2_bagfile_information: Information {
                 version: 5,
                 storage_identifier: "mcap",
                 span,
-                message_count: count,
-                topics_with_message_count: self.topics.values().map(topic).collect(),
+                message_count,
+                topics_with_message_count: self.channels.iter().enumerate().map(topic).collect(),
                 compression_format: "",
                 compression_mode: "",
                 relative_file_paths: [file],
-                files: [Part { path: file, span, message_count: count }],
+                files: [Part { path: file, span, message_count }],
             },
         };
-        let text = yaml_serde::to_string(&metadata)
-            .map_err(|why| Unusable::new("metadata.yaml", why.to_string(), "please report it"))?;
-        Ok((self.writer.into_inner().into_inner(), text))
+        yaml_serde::to_string(&metadata)
+            .map_err(|why| Unusable::new("metadata.yaml", why.to_string(), "please report it"))
     }
 }
 
@@ -135,7 +136,7 @@ struct Information<'a> {
     storage_identifier: &'static str,
     #[serde(flatten)]
     span: Span,
-    message_count: u64,
+    message_count: usize,
     topics_with_message_count: Vec<Counted>,
     compression_format: &'static str,
     compression_mode: &'static str,
@@ -162,7 +163,7 @@ struct Since {
 #[derive(Serialize)]
 struct Counted {
     topic_metadata: Told,
-    message_count: u64,
+    message_count: usize,
 }
 
 #[derive(Serialize)]
@@ -178,5 +179,5 @@ struct Part<'a> {
     path: &'a str,
     #[serde(flatten)]
     span: Span,
-    message_count: u64,
+    message_count: usize,
 }

@@ -19,7 +19,8 @@ use std::collections::BTreeMap;
 use socrates_model::recording::AgentInfo;
 use socrates_model::{AgentId, AgentState, Grid, NodeId, Point, Recording};
 
-use self::bag::{BEGIN_NANOS, Bag, Kept, Topic};
+use self::bag::{BEGIN_NANOS, Kept, Topic};
+pub use self::bag::{Bag, Channel, Message};
 use self::cdr::Cdr;
 use self::scan::{BEAMS, Lidar};
 use super::content::{Content, WORDS};
@@ -78,11 +79,12 @@ fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
     let Some(run) = &scenario.recording else { return Ok(Files::new()) };
     let name = file_name(&scenario.name, losses);
     let mcap = format!("{name}_0.mcap");
-    let (bytes, metadata) = recorded(scenario, run)?.finish(&mcap)?;
+    let bag = recorded(scenario, run)?;
+    let metadata = bag.metadata(&mcap)?;
     let open = socrates_model::Location { doors: Vec::new(), ..scenario.location.clone() };
     let (route, _) = crate::nav2_route::write(&open);
     let mut files = Files::from([
-        (format!("bag/{mcap}"), File::Bytes(bytes)),
+        (format!("bag/{mcap}"), File::Bag(bag)),
         ("bag/metadata.yaml".to_owned(), File::Text(metadata)),
         ("route/graph.geojson".to_owned(), File::Text(route)),
         ("config/waypoints.yaml".to_owned(), File::Text(robot_yaml(scenario))),
@@ -96,15 +98,15 @@ fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
 
 /// The bag of a run.
 fn recorded(scenario: &Scenario, run: &Recording) -> Result<Bag, Unusable> {
-    let mut bag = Bag::new()?;
+    let mut bag = Bag::default();
     let cast = Cast::of(scenario, run);
-    bag.send(TF_STATIC, 0, transform(0, "map", "odom", Point::origin(), 0.0))?;
-    bag.send(MAP, 0, map(&scenario.location.grid))?;
+    bag.send(TF_STATIC, 0, transform(0, "map", "odom", Point::origin(), 0.0));
+    bag.send(MAP, 0, map(&scenario.location.grid));
     let goals = cast.goals.get(&AgentId::Robot).map_or(&[][..], Vec::as_slice);
-    bag.send(PLAN, 0, path(goals))?;
+    bag.send(PLAN, 0, path(goals));
     let lidar = Lidar::of(&scenario.location.grid);
     for sample in &samples(run, 1)? {
-        cast.tick(&mut bag, sample, &lidar)?;
+        cast.tick(&mut bag, sample, &lidar);
     }
     Ok(bag)
 }
@@ -142,34 +144,34 @@ impl<'a> Cast<'a> {
     }
 
     /// The messages of one tick.
-    fn tick(&self, bag: &mut Bag, sample: &Sample<'_>, lidar: &Lidar) -> Result<(), Unusable> {
+    fn tick(&self, bag: &mut Bag, sample: &Sample<'_>, lidar: &Lidar) {
         let nanos = sample.time.nanos();
         let mut clock = Cdr::new();
         clock.time(BEGIN_NANOS + nanos);
-        bag.send(CLOCK, nanos, clock)?;
+        bag.send(CLOCK, nanos, clock);
         let (robots, people): (Vec<&AgentState>, Vec<&AgentState>) =
             sample.states.iter().copied().partition(|state| state.agent_id() == AgentId::Robot);
         if let Some(robot) = robots.first() {
-            bag.send(TF, nanos, transform(nanos, "odom", "base_link", at(robot), robot.yaw))?;
-            bag.send(ODOM, nanos, odometry(nanos, robot))?;
+            bag.send(TF, nanos, transform(nanos, "odom", "base_link", at(robot), robot.yaw));
+            bag.send(ODOM, nanos, odometry(nanos, robot));
             let mut message = Cdr::new();
             self.agent(&mut message, robot);
-            bag.send(ROBOT, nanos, message)?;
+            bag.send(ROBOT, nanos, message);
             if sample.number.is_multiple_of(SCAN_TICKS) {
                 let discs: Vec<(Point, f64)> =
                     people.iter().map(|state| (at(state), self.radius_m(state.agent_id()))).collect();
-                bag.send(SCAN, nanos, scan(nanos, &lidar.ranges(at(robot), robot.yaw, &discs)))?;
+                bag.send(SCAN, nanos, scan(nanos, &lidar.ranges(at(robot), robot.yaw, &discs)));
             }
         }
-        bag.send(PEOPLE, nanos, self.people(nanos, &people))?;
+        bag.send(PEOPLE, nanos, self.people(nanos, &people));
         let mut poses = headed(nanos, "map");
         poses.count(people.len());
         people.iter().for_each(|state| poses.pose(at(state), state.yaw));
-        bag.send(POSES, nanos, poses)?;
+        bag.send(POSES, nanos, poses);
         let mut agents = headed(nanos, "map");
         agents.count(people.len());
         people.iter().for_each(|state| self.agent(&mut agents, state));
-        bag.send(HUMANS, nanos, agents)
+        bag.send(HUMANS, nanos, agents);
     }
 
     /// `people_msgs/People` with role, group and gesture as tags.
