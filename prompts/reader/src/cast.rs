@@ -221,7 +221,13 @@ impl Cast {
             // `all but one`: but for the last.
             let bare = except.head == Head::Bare && except.ordinal.is_none() && except.pick == Pick::Some;
             let except = Noun { ordinal: except.ordinal.or_else(|| bare.then_some(0)), ..(**except).clone() };
-            let except = self.picks(&except, &base).unwrap_or_default();
+            // `everyone except the wife`
+            let except = match except.head {
+                Head::Role(_) | Head::Name(_) => self.meant(&except),
+                Head::Robot | Head::It | Head::He | Head::They | Head::Who | Head::Bare => {
+                    self.picks(&except, &base).unwrap_or_default()
+                }
+            };
             let rest: People = base.into_iter().filter(|person| !except.contains(person)).collect();
             self.picked.clone_from(&rest);
             return rest;
@@ -243,6 +249,10 @@ impl Cast {
             None if noun.of.is_some() => base,
             None => {
                 let role = base.first().and_then(|person| self.roles.get(*person)).cloned();
+                // `2 leave, 1 stays`: a number of nobody in particular.
+                if role.is_none() {
+                    self.doubts.push(noun.tokens.clone());
+                }
                 let another =
                     role.filter(|_| matches!(noun.pick, Pick::Another | Pick::Others) || noun.ordinal.is_some());
                 self.new_people(noun, &another.unwrap_or_else(|| "person".to_owned()))
@@ -431,6 +441,10 @@ impl Cast {
         self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
         let people: People = (first..first + count).collect();
         let any = noun.generic || ANYBODY.contains(&role);
+        // `Our porters like that. Two porters …`: how many there are is not said.
+        if noun.pick == Pick::The && noun.several && noun.count.is_none() {
+            self.vague.extend(&people);
+        }
         if any && (self.asks || noun.several && noun.count.is_none() && noun.pick == Pick::Plain) {
             self.vague.extend(&people);
         }

@@ -1,5 +1,6 @@
 //! Pass 3: tokens to chunks: noun phrases, places, amounts, and the words between them.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 
@@ -80,8 +81,20 @@ impl fmt::Display for Chunk {
 pub(crate) fn chunks(tokens: &[Token], lexicon: &Lexicon) -> Vec<Chunk> {
     let mut found = Vec::new();
     let mut at = 0;
+    let mut named = BTreeMap::new();
     while let Some(token) = tokens.get(at) {
-        let (is, end) = chunk(tokens, at, lexicon);
+        let (mut is, end) = chunk(tokens, at, lexicon);
+        // `the lobby`, of the elevator lobby that was named before.
+        if let (Is::Place(class), Some(last)) = (&mut is, end.checked_sub(1).and_then(|last| tokens.get(last))) {
+            let said = tokens.get(at..end).unwrap_or_default().iter().filter(|token| !token.says_nothing()).count();
+            match named.get(&last.lemma) {
+                Some(known) if said == 1 && token.is(Sort::Definite) => *class = *known,
+                Some(_) | None if said > 1 => {
+                    named.insert(last.lemma.clone(), *class);
+                }
+                Some(_) | None => {}
+            }
+        }
         // `some room` may be room to pass: the article stands alone.
         let (is, end) =
             if matches!(is, Is::Place(_)) && token.is(Sort::Indefinite) { (Is::Word, at + 1) } else { (is, end) };
@@ -158,7 +171,8 @@ fn owns(tokens: &[Token], at: usize) -> bool {
             || next.is(Sort::At)
             || next.is(Sort::Definite)
             || next.number().is_some()
-            || next.is(Sort::Fill) && tokens.get(at + 2).is_some_and(|behind| behind.is(Sort::At))
+            || next.is(Sort::Fill)
+                && tokens.get(at + 2).is_some_and(|behind| behind.is(Sort::At) || behind.number().is_some())
     };
     ends && next.is_some_and(|next| !is(next))
 }

@@ -56,6 +56,8 @@ mod told;
 
 mod form;
 
+mod kept;
+
 mod account;
 
 mod passes;

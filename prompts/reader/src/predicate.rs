@@ -198,7 +198,9 @@ impl Parser<'_> {
             return;
         }
         let mut sign = frame.and_then(|frame| frame.says);
-        if frame.is_some_and(|frame| frame.asks) {
+        // `signals it to wait. Two operators cross`: what is asked for is in the row, and nobody else is asked.
+        let told = sign.is_some() && self.peek().is_some_and(|next| next.noun().is_some());
+        if frame.is_some_and(|frame| frame.asks) && !told {
             sign = self.speech().or(sign);
         }
         // `says "follow me" to two students`

@@ -407,7 +407,7 @@ impl Story {
         let less = |person: &Person| {
             any_placed && !placed(person)
                 || any_role && anybody(person)
-                || person.relation.is_none() && person.steps.is_empty() && self.people.len() > 1
+                || person.relation.is_none() && person.steps.is_empty()
         };
         self.people.iter().enumerate().filter(|(_, person)| less(person)).map(|(at, _)| at).collect()
     }
