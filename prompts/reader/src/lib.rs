@@ -35,6 +35,7 @@ mod chunk;
 mod find;
 
 mod clause;
+mod described;
 mod parser;
 mod predicate;
 mod sentence;

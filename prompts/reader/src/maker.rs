@@ -86,7 +86,11 @@ impl Maker<'_> {
         for run in runs(&clause.looks) {
             self.say(run, Says::Background(reason));
         }
-        for run in runs(&clause.left) {
+        for run in runs(&clause.described) {
+            self.say(run, Says::Background(if robot { Background::Errand } else { Background::Setting }));
+        }
+        let left: Vec<usize> = clause.left.iter().copied().filter(|at| !clause.described.contains(at)).collect();
+        for run in runs(&left) {
             self.say(run, Says::NotRead);
         }
     }

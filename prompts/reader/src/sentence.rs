@@ -204,6 +204,7 @@ impl Parser<'_> {
         last.after_s = last.after_s.or(clause.after_s);
         last.places.extend(&clause.places);
         last.left.extend(&clause.left);
+        last.described.extend(&clause.described);
         last.looks.extend(&clause.looks);
         if last.conditions.is_empty() || when {
             last.conditions.clone_from(&clause.conditions);
@@ -317,7 +318,7 @@ impl Parser<'_> {
     }
 
     pub(crate) fn clause(&mut self, join: Join, inner: bool) -> Clause {
-        let mut clause = Clause::new(join, self.token());
+        let (start, mut clause) = (self.at, Clause::new(join, self.token()));
         clause.not = self.denied && join == Join::And && self.before().is_some_and(|before| before.word(Sort::Or));
         clause.own = self.relative(&mut clause);
         while let Some(chunk) = self.peek() {
@@ -371,6 +372,7 @@ impl Parser<'_> {
         if denied && clause.left.is_empty() && clause.places.is_empty() {
             clause.does = Some(false);
         }
+        self.describe(start, inner, &mut clause);
         clause.tokens.end = self.token();
         clause
     }

@@ -395,7 +395,7 @@ impl Story {
     /// others who have a role. Mostly something that tells of them was not made out.
     fn unplaced(&self) -> People {
         let placed = |person: &Person| {
-            let comes = |step: &Step| step.act == Act::Follow;
+            let comes = |step: &Step| matches!(step.act, Act::Follow | Act::Approach | Act::RunAway);
             let group = |other: &&Person| person.group.is_some() && other.group == person.group;
             person.relation.is_some()
                 || person.steps.iter().any(comes)
