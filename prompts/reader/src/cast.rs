@@ -36,6 +36,8 @@ pub(crate) struct Cast {
     pub(crate) picked: People,
     /// Whether somebody is a woman, or a man, as far as that was said.
     pub(crate) female: BTreeMap<usize, bool>,
+    /// Those of whom a pronoun said so first, although others might have been meant.
+    pub(crate) guessed: People,
     /// People by their names.
     pub(crate) names: BTreeMap<String, usize>,
     /// People whom a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
@@ -173,6 +175,15 @@ impl Cast {
             let far = !self.last.is_empty() && !self.last.contains(&found) && !self.before.contains(&found);
             if far || other || several && noun.head == Head::He {
                 self.doubts.push(noun.tokens.clone());
+            }
+        }
+        // `A nurse crosses, and a doctor comes. She …, he …`: whichever of them is meant.
+        if let Some(found) = found.filter(|found| female.is_some() && !self.female.contains_key(found)) {
+            let mut others = self.everybody().into_iter().filter(|person| *person != found);
+            if self.guessed.iter().any(|other| *other != found && self.female.get(other).copied() != female) {
+                self.doubts.push(noun.tokens.clone());
+            } else if others.any(|person| !self.female.contains_key(&person)) {
+                self.guessed.push(found);
             }
         }
         if let (Some(person), Some(female)) = (found, female) {

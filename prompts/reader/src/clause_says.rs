@@ -209,6 +209,7 @@ impl Maker<'_> {
             |reason: &Reason<Named>| matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed | Cue::Stopped);
         let walks = relation.is_some_and(|relation| !relation.stands()) || frame.plain && frame.goes && !act.not;
         let sets_off = walks && (whole.when.iter().any(sets_off) || whole.clause.after_s.is_some());
+        let none = who.iter().any(|noun| noun.pick == Pick::None);
         let does = frame
             .denied
             .filter(|_| act.not)
@@ -226,7 +227,8 @@ impl Maker<'_> {
             let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m.map(|m| m.value) };
             self.say(tokens.clone(), Says::Introduce(who));
             self.say(tokens, Says::Then(reason, false));
-        } else if frame.asks {
+        } else if frame.asks || frame.relate == Some(Relation::Leaving) && none {
+            // `nobody gets out`: then all stay, of whom nothing was read.
             self.say(tokens, Says::NotRead);
         } else if relation.is_none() && !frame.group {
             // What is denied, or says no more than that somebody is there.

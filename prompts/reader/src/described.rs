@@ -7,7 +7,7 @@
 
 use crate::chunk::{Chunk, Is};
 use crate::clause::Clause;
-use crate::noun::Noun;
+use crate::noun::{Head, Noun};
 use crate::parser::Parser;
 use crate::token::{Bent, Sort};
 
@@ -27,6 +27,7 @@ impl Parser<'_> {
             }
             let describes = match &chunk.is {
                 // What is done to the robot is told by its verb.
+                Is::Noun(noun) if matches!(noun.head, Head::He | Head::They) => self.is_beside(at),
                 Is::Noun(noun) => noun.may_be_robot() && !self.chunks.get(at + 1).is_some_and(begins_a_verb),
                 // `nearly walks into it` is not done.
                 Is::Word if chunk.word(Sort::Hedge) => false,
@@ -37,6 +38,17 @@ impl Parser<'_> {
                 clause.described.extend(chunk.tokens.clone());
             }
         }
+    }
+
+    /// `a guard stands beside him`, `next to her`: somebody who was named is there as well.
+    fn is_beside(&self, at: usize) -> bool {
+        let before = |back: usize| at.checked_sub(back).and_then(|at| self.chunks.get(at));
+        let beside = |back: usize| before(back).is_some_and(|chunk| chunk.word(Sort::Beside) || chunk.word(Sort::With));
+        // `the one behind him` is somebody else.
+        let which = |back: usize| {
+            before(back).and_then(Chunk::noun).is_some_and(|noun| noun.head == Head::Bare && noun.ordinal.is_none())
+        };
+        beside(1) && !which(2) || before(1).is_some_and(|chunk| chunk.word(Sort::To)) && beside(2)
     }
 
     /// `near the aquarium`, `with a pile of folders`: nothing but articles and words like it between a preposition and it.

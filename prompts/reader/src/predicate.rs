@@ -113,6 +113,10 @@ impl Parser<'_> {
             if let Some(last) = clause.acts.last_mut() {
                 last.not = !last.not;
             }
+        } else if chunk.word(Sort::No) && self.lacks_a_thing() {
+            clause.looks.extend(chunk.tokens.clone());
+        } else if chunk.word(Sort::Other) && self.before().is_some_and(|before| before.word(Sort::Every)) {
+            clause.goes.push(chunk.tokens.clone());
         } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
             clause.not = true;
             clause.never |= chunk.word(Sort::Never);
@@ -145,6 +149,13 @@ impl Parser<'_> {
         let bent =
             self.peek().is_some_and(|chunk| matches!(chunk.bent, Bent::S | Bent::Ed) && !chunk.word(Sort::Looks));
         bent && self.before().and_then(Chunk::noun).is_some_and(names_somebody)
+    }
+
+    /// `no truck`: nobody has one.
+    fn lacks_a_thing(&self) -> bool {
+        let thing = |next: &Chunk| next.word(Sort::Thing) && next.is == Is::Word;
+        let acts = longest(self.chunks, self.at + 1, &self.lexicon.frame_patterns).is_some();
+        self.ahead(1).is_some_and(thing) && !acts
     }
 
     /// `two racks`: a number of things.

@@ -288,13 +288,15 @@ impl Parser<'_> {
                 || next.word(Sort::Verb) && next.bent == Bent::Ed
         };
         let person = next.is_some_and(follows);
+        // `the same direction as the robot` compares.
+        let compares = self.before().is_some_and(|before| before.word(Sort::Empty));
         let tie = match () {
             () if chunk.word(Sort::Until) => Tie::Until,
             () if chunk.word(Sort::Unless) => Tie::Unless,
             () if chunk.word(Sort::When) => Tie::When,
             () if chunk.word(Sort::Before) && person => Tie::Before,
             () if chunk.word(Sort::After) && person => Tie::After,
-            () if chunk.word(Sort::While) && person => Tie::While,
+            () if chunk.word(Sort::While) && person && !compares => Tie::While,
             () => return None,
         };
         (tie == Tie::Until || next.is_some_and(|next| !matches!(next.is, Is::Amount(_)))).then_some(tie)

@@ -97,7 +97,7 @@ impl Maker<'_> {
                 };
                 let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
                 // `while it drives from the ward to the exit`
-                let drives = condition.tie == Tie::While && condition.clause.places.iter().any(|at| at.to || at.from);
+                let drives = condition.tie == Tie::While && condition.clause.places.iter().any(|at| at.from);
                 self.places(&condition.clause, robot && (drives || condition.clause.acts.iter().any(part)));
                 self.rest(&condition.clause);
             }
