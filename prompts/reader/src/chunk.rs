@@ -157,7 +157,15 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
     let named = token.is(Sort::Label)
         && tokens.get(at + 1).is_some_and(|next| next.number().is_some())
         && amount(tokens, at + 1, lexicon).is_none();
-    (Is::Word, at + 1 + usize::from(named))
+    let more = if named { 1 + and_number(tokens, at + 2, lexicon) } else { 0 };
+    (Is::Word, at + 1 + more)
+}
+
+/// Tokens of `and 8`, behind `between racks 7`.
+fn and_number(tokens: &[Token], at: usize, lexicon: &Lexicon) -> usize {
+    let and = tokens.get(at).is_some_and(|token| token.is(Sort::And));
+    let number = tokens.get(at + 1).is_some_and(|token| token.number().is_some());
+    if and && number && amount(tokens, at + 1, lexicon).is_none() { 2 } else { 0 }
 }
 
 /// Whether `'s` makes a possessor of what stands before it, and is no short `is`.
@@ -258,7 +266,7 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
         })
     };
     if tokens.get(end).is_some_and(named) && !unit(tokens.get(end + 1)) {
-        end += 1;
+        end += 1 + and_number(tokens, end + 1, lexicon);
     }
     Some((lexicon.places.get(row)?.class, end))
 }

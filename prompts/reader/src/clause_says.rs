@@ -359,6 +359,8 @@ impl Maker<'_> {
             }
             () => 3,
         };
+        let stands = |act: &Predicate| frame(act).is_some_and(|frame| frame.relate == Some(Relation::Static));
+        let waits = !robot && clause.acts.iter().any(stands);
         for (number, At { class, to, from, via, tokens }) in clause.places.iter().enumerate() {
             let part = part.filter(|_| number == 0);
             // Whoever comes out of a room is met where it is told beside.
@@ -378,6 +380,8 @@ impl Maker<'_> {
                 }
                 Some(class) if part == Some(Part::Start) => Says::RobotStart(*class),
                 Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),
+                // `waits for the elevator`: there is nobody in it.
+                Some(_) if *to && waits => Says::Background(Background::Setting),
                 Some(class) => Says::Happens(*class, if *to { 1 } else { rank }),
             };
             self.say(tokens.0..tokens.1, says);

@@ -3,6 +3,7 @@
 use crate::chunk::{Amount, Chunk, Is};
 use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
+use crate::noun::Noun;
 use crate::noun::{BRISK_MPS, Head, Pick, SLOW_MPS};
 use crate::parser::{Parser, names_somebody, says_nothing};
 use crate::token::{Bent, Mark, Sort};
@@ -140,7 +141,8 @@ impl Parser<'_> {
     /// `let a guard stop it`: what is asked for is that the guard does it.
     fn lets_somebody(&self, clause: &Clause) -> bool {
         let lets = self.peek().is_some_and(|chunk| chunk.word(Sort::Lets) && chunk.bent == Bent::Base);
-        let somebody = self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some);
+        let meant = |noun: &Noun| noun.pick == Pick::Some || matches!(noun.head, Head::He | Head::They);
+        let somebody = self.ahead(1).and_then(Chunk::noun).is_some_and(meant);
         lets && somebody && clause.is_bare() && !clause.own && clause.subject.is_empty()
     }
 

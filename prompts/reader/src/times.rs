@@ -240,6 +240,10 @@ impl Maker<'_> {
                 self.goes(tokens.clone());
             }
         }
+        let amounts_of_robot = [clause.lasts_s, clause.after_s, clause.within_m].into_iter().flatten();
+        for amount in amounts_of_robot.filter(|_| robot && !done && !then) {
+            self.say(amount.from..amount.to, Says::Background(Background::Errand));
+        }
         if done || then || met {
             for tokens in used {
                 self.goes(tokens);
