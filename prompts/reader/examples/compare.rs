@@ -366,7 +366,8 @@ fn judge(reader: &Reader, case: &Case, old: Option<&View>, aside: bool, options:
         requests: 1,
         whole: usize::from(!new.honest),
         old_whole: usize::from(!old.honest),
-        needless: usize::from(right && new.honest),
+        // What a text contradicts, or wants and cannot be, is said to be so: that is needed.
+        needless: usize::from(right && new.honest && !case.facts.iter().any(|fact| kind(fact).contains("problem"))),
         ..Tally::default()
     };
     let mut shown = options.list.is_none();

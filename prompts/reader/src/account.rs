@@ -6,16 +6,19 @@
 
 use std::ops::Range;
 
+use socrates_model::PlaceClass;
 use socrates_model::statement::Background;
 use unicode_segmentation::UnicodeSegmentation as _;
 
 use crate::cast::People;
+use crate::chunk::Chunk;
 use crate::clause::Clause;
 use crate::discourse::Told;
+use crate::kept::missing;
 use crate::line::Line;
 use crate::normalize::Scene;
 use crate::rows::{Act, Cue};
-use crate::statement::{Reason, Says};
+use crate::statement::{Reason, Says, Statement};
 use crate::story::{Story, Telling};
 
 /// Why what was said of somebody is not in the story.
@@ -137,8 +140,14 @@ impl Fate {
 }
 
 /// What became of every piece, in the order of the text.
-pub(crate) fn account(text: &str, scene: &Scene, clauses: &[Clause], told: &Told, telling: &Telling) -> Vec<Piece> {
-    let mut pieces = words(scene, clauses, told, telling);
+pub(crate) fn account(
+    text: &str,
+    scene: &Scene,
+    (chunks, clauses): (&[Chunk], &[Clause]),
+    told: &Told,
+    telling: &Telling,
+) -> Vec<Piece> {
+    let mut pieces = words(scene, (chunks, clauses), told, telling);
     let background = scene.background.iter();
     pieces.extend(background.map(|(at, reason)| Piece {
         at: at.clone(),
@@ -159,15 +168,18 @@ pub(crate) fn account(text: &str, scene: &Scene, clauses: &[Clause], told: &Told
 }
 
 /// The fate of every word of the scene, each a piece of its own.
-fn words(scene: &Scene, clauses: &[Clause], told: &Told, telling: &Telling) -> Vec<Piece> {
+fn words(scene: &Scene, (chunks, clauses): (&[Chunk], &[Clause]), told: &Told, telling: &Telling) -> Vec<Piece> {
     // The statement that is about the fewest words tells of a word; of two about the same, the one that loses more.
     let mut fates: Vec<Option<(usize, u8, Fate)>> = vec![None; scene.tokens.len()];
+    let place = Place::of(told, telling, clauses);
     for (number, statement) in told.statements.iter().enumerate() {
         let (fate, rank) = if telling.lost.contains(&number) {
             (Fate::NotPlayed(ONE_WAY.to_owned()), 2)
         } else {
             Fate::of(&statement.says, &telling.story)
         };
+        let (fate, rank) =
+            if place.has_beside(statement) { (Fate::Background(Background::Setting), 1) } else { (fate, rank) };
         let length = statement.tokens.len();
         for own in fates.get_mut(statement.tokens.clone()).unwrap_or_default() {
             let wins = |(other, own): &(usize, u8)| *other > length || *other == length && *own < rank;
@@ -179,6 +191,12 @@ fn words(scene: &Scene, clauses: &[Clause], told: &Told, telling: &Telling) -> V
     let mut fates: Vec<Option<Fate>> = fates.into_iter().map(|own| own.map(|(_, _, fate)| fate)).collect();
     for tokens in &telling.unplaced {
         fates.get_mut(tokens.clone()).unwrap_or_default().fill(Some(Fate::NotPlayed(UNPLACED.to_owned())));
+    }
+    for missing in missing(chunks, &telling.story) {
+        let read = |fate: &&mut Option<Fate>| **fate == Some(Fate::Read) || fate.is_none();
+        for own in fates.get_mut(missing).unwrap_or_default().iter_mut().filter(read) {
+            *own = Some(Fate::NotRead);
+        }
     }
     for doubt in &told.doubts {
         fates.get_mut(doubt.clone()).unwrap_or_default().fill(Some(Fate::NotRead));
@@ -205,6 +223,38 @@ fn words(scene: &Scene, clauses: &[Clause], told: &Told, telling: &Telling) -> V
         .collect();
     let said = scene.tokens.iter().zip(all).zip(numbers).filter(|((token, _), _)| token.is_said());
     said.map(|((token, fate), clause)| Piece { at: token.at.clone(), clause, fate }).collect()
+}
+
+/// Where it happens, as the text says it.
+struct Place<'a> {
+    class: Option<PlaceClass>,
+    /// The clause that says it.
+    clause: Option<&'a Clause>,
+}
+
+impl<'a> Place<'a> {
+    fn of(told: &Told, telling: &Telling, clauses: &'a [Clause]) -> Self {
+        let class = telling.story.place;
+        let says = told.statements.iter().filter_map(|statement| {
+            let Says::Happens(own, rank) = statement.says else { return None };
+            (class == Some(own)).then_some((rank, &statement.tokens))
+        });
+        // Of those that count the same, the first.
+        let best = says.rev().max_by_key(|(rank, _)| *rank);
+        let of = |tokens: &Range<usize>| clauses.iter().find(|clause| holds(&clause.tokens, tokens));
+        Self { class, clause: best.and_then(|(_, tokens)| of(tokens)) }
+    }
+
+    /// Whether a statement names another place in the same clause, which tells no more than where this one is: `the corridor
+    /// outside ward 3`.
+    fn has_beside(&self, statement: &Statement<People>) -> bool {
+        let other = if let Says::Happens(class, _) = statement.says { self.class != Some(class) } else { false };
+        other && self.clause.is_some_and(|clause| holds(&clause.tokens, &statement.tokens))
+    }
+}
+
+const fn holds(all: &Range<usize>, some: &Range<usize>) -> bool {
+    all.start <= some.start && some.end <= all.end
 }
 
 /// The clause of every token, by its number.

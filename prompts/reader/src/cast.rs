@@ -36,6 +36,8 @@ pub(crate) struct Cast {
     pub(crate) picked: People,
     /// Whether somebody is a woman, or a man, as far as that was said.
     pub(crate) female: BTreeMap<usize, bool>,
+    /// Those of whom a pronoun said so first, although others might have been meant.
+    pub(crate) guessed: People,
     /// People by their names.
     pub(crate) names: BTreeMap<String, usize>,
     /// People whom a noun phrase meant, by its first token: said again by an ellipsis, it means the same.
@@ -175,6 +177,15 @@ impl Cast {
                 self.doubts.push(noun.tokens.clone());
             }
         }
+        // `A nurse crosses, and a doctor comes. She …, he …`: whichever of them is meant.
+        if let Some(found) = found.filter(|found| female.is_some() && !self.female.contains_key(found)) {
+            let mut others = self.everybody().into_iter().filter(|person| *person != found);
+            if self.guessed.iter().any(|other| *other != found && self.female.get(other).copied() != female) {
+                self.doubts.push(noun.tokens.clone());
+            } else if others.any(|person| !self.female.contains_key(&person)) {
+                self.guessed.push(found);
+            }
+        }
         if let (Some(person), Some(female)) = (found, female) {
             self.female.entry(person).or_insert(female);
         }
@@ -221,7 +232,13 @@ impl Cast {
             // `all but one`: but for the last.
             let bare = except.head == Head::Bare && except.ordinal.is_none() && except.pick == Pick::Some;
             let except = Noun { ordinal: except.ordinal.or_else(|| bare.then_some(0)), ..(**except).clone() };
-            let except = self.picks(&except, &base).unwrap_or_default();
+            // `everyone except the wife`
+            let except = match except.head {
+                Head::Role(_) | Head::Name(_) => self.meant(&except),
+                Head::Robot | Head::It | Head::He | Head::They | Head::Who | Head::Bare => {
+                    self.picks(&except, &base).unwrap_or_default()
+                }
+            };
             let rest: People = base.into_iter().filter(|person| !except.contains(person)).collect();
             self.picked.clone_from(&rest);
             return rest;
@@ -243,6 +260,10 @@ impl Cast {
             None if noun.of.is_some() => base,
             None => {
                 let role = base.first().and_then(|person| self.roles.get(*person)).cloned();
+                // `2 leave, 1 stays`: a number of nobody in particular.
+                if role.is_none() {
+                    self.doubts.push(noun.tokens.clone());
+                }
                 let another =
                     role.filter(|_| matches!(noun.pick, Pick::Another | Pick::Others) || noun.ordinal.is_some());
                 self.new_people(noun, &another.unwrap_or_else(|| "person".to_owned()))
@@ -431,6 +452,10 @@ impl Cast {
         self.roles.extend(std::iter::repeat_n(role.to_owned(), count));
         let people: People = (first..first + count).collect();
         let any = noun.generic || ANYBODY.contains(&role);
+        // `Our porters like that. Two porters …`: how many there are is not said.
+        if noun.pick == Pick::The && noun.several && noun.count.is_none() {
+            self.vague.extend(&people);
+        }
         if any && (self.asks || noun.several && noun.count.is_none() && noun.pick == Pick::Plain) {
             self.vague.extend(&people);
         }

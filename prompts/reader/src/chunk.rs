@@ -1,5 +1,6 @@
 //! Pass 3: tokens to chunks: noun phrases, places, amounts, and the words between them.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 
@@ -80,8 +81,20 @@ impl fmt::Display for Chunk {
 pub(crate) fn chunks(tokens: &[Token], lexicon: &Lexicon) -> Vec<Chunk> {
     let mut found = Vec::new();
     let mut at = 0;
+    let mut named = BTreeMap::new();
     while let Some(token) = tokens.get(at) {
-        let (is, end) = chunk(tokens, at, lexicon);
+        let (mut is, end) = chunk(tokens, at, lexicon);
+        // `the lobby`, of the elevator lobby that was named before.
+        if let (Is::Place(class), Some(last)) = (&mut is, end.checked_sub(1).and_then(|last| tokens.get(last))) {
+            let said = tokens.get(at..end).unwrap_or_default().iter().filter(|token| !token.says_nothing()).count();
+            match named.get(&last.lemma) {
+                Some(known) if said == 1 && token.is(Sort::Definite) => *class = *known,
+                Some(_) | None if said > 1 => {
+                    named.insert(last.lemma.clone(), *class);
+                }
+                Some(_) | None => {}
+            }
+        }
         // `some room` may be room to pass: the article stands alone.
         let (is, end) =
             if matches!(is, Is::Place(_)) && token.is(Sort::Indefinite) { (Is::Word, at + 1) } else { (is, end) };
@@ -144,7 +157,15 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
     let named = token.is(Sort::Label)
         && tokens.get(at + 1).is_some_and(|next| next.number().is_some())
         && amount(tokens, at + 1, lexicon).is_none();
-    (Is::Word, at + 1 + usize::from(named))
+    let more = if named { 1 + and_number(tokens, at + 2, lexicon) } else { 0 };
+    (Is::Word, at + 1 + more)
+}
+
+/// Tokens of `and 8`, behind `between racks 7`.
+fn and_number(tokens: &[Token], at: usize, lexicon: &Lexicon) -> usize {
+    let and = tokens.get(at).is_some_and(|token| token.is(Sort::And));
+    let number = tokens.get(at + 1).is_some_and(|token| token.number().is_some());
+    if and && number && amount(tokens, at + 1, lexicon).is_none() { 2 } else { 0 }
 }
 
 /// Whether `'s` makes a possessor of what stands before it, and is no short `is`.
@@ -158,7 +179,8 @@ fn owns(tokens: &[Token], at: usize) -> bool {
             || next.is(Sort::At)
             || next.is(Sort::Definite)
             || next.number().is_some()
-            || next.is(Sort::Fill) && tokens.get(at + 2).is_some_and(|behind| behind.is(Sort::At))
+            || next.is(Sort::Fill)
+                && tokens.get(at + 2).is_some_and(|behind| behind.is(Sort::At) || behind.number().is_some())
     };
     ends && next.is_some_and(|next| !is(next))
 }
@@ -244,7 +266,7 @@ fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<Place
         })
     };
     if tokens.get(end).is_some_and(named) && !unit(tokens.get(end + 1)) {
-        end += 1;
+        end += 1 + and_number(tokens, end + 1, lexicon);
     }
     Some((lexicon.places.get(row)?.class, end))
 }

@@ -129,6 +129,8 @@ pub(crate) struct Clause {
     pub(crate) verbal: bool,
     /// Tokens of which nothing was made.
     pub(crate) left: Vec<usize>,
+    /// Those of them that ask for nothing where they stand.
+    pub(crate) described: Vec<usize>,
     /// Tokens that tell how somebody looks, or what they have with them.
     pub(crate) looks: Vec<usize>,
     pub(crate) tokens: Range<usize>,
@@ -159,6 +161,7 @@ impl Clause {
             denials: Vec::new(),
             verbal: false,
             left: Vec::new(),
+            described: Vec::new(),
             looks: Vec::new(),
             tokens: at..at,
         }

@@ -17,7 +17,7 @@ use crate::times::{Times, Whole};
 
 /// The statements of a text.
 pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement<Named>> {
-    let mut maker = Maker { lexicon, found: Vec::new(), first: false, tells: false, partly: false, asks: false };
+    let mut maker = Maker::new(lexicon);
     for (at, clause) in clauses.iter().enumerate() {
         // `the one who crosses`: whoever was said to cross.
         let relative = clauses.get(at + 1).filter(|next| next.subject.iter().all(|noun| noun.head == Head::Who));
@@ -42,6 +42,13 @@ pub(crate) fn statements(clauses: &[Clause], lexicon: &Lexicon) -> Vec<Statement
             continue;
         }
         maker.clause(clause);
+    }
+    // What is said once and holds of several clauses is waited for where one of them does something.
+    let answered = std::mem::take(&mut maker.answered);
+    for statement in &mut maker.found {
+        if let Says::Then(_, waits) = &mut statement.says {
+            *waits &= !answered.contains(&(statement.tokens.start, statement.tokens.end));
+        }
     }
     maker.found
 }
@@ -77,7 +84,10 @@ impl Maker<'_> {
             self.are_there(clause.subject.clone());
             // Whoever shall not do what was not read: `neither of the two …`
             for none in clause.subject.iter().filter(|noun| noun.pick == Pick::None) {
-                self.say(none.tokens.clone(), Says::NotRead);
+                // `no other people`: nobody is there, and nothing is asked of them.
+                let there = none.of.is_none() && none.head != Head::Bare && clause.left.is_empty();
+                let says = if there { Says::Background(Background::Setting) } else { Says::NotRead };
+                self.say(none.tokens.clone(), says);
             }
         }
         if clause.group {
@@ -104,12 +114,19 @@ impl Maker<'_> {
         }
         self.rest(clause);
         // A reason for which nobody does anything yet is one for what comes.
-        let done = self.found.get(start..).unwrap_or_default();
-        let done = done.iter().any(|own| matches!(own.says, Says::Do(_) | Says::Then(..)));
+        let own = self.found.get(start..).unwrap_or_default();
+        let does = own.iter().any(|own| matches!(own.says, Says::Do(_)));
+        let done = does || own.iter().any(|own| matches!(own.says, Says::Then(..)));
+        if does {
+            let conditions = clause.conditions.iter().map(|condition| &condition.clause.tokens);
+            self.answered.extend(conditions.map(|tokens| (tokens.start, tokens.end)));
+        }
         if let Some(reason) = when.iter().chain(&until).next().filter(|_| !done) {
             let own = clause.conditions.first().map(|condition| condition.clause.tokens.clone());
-            let met = matches!(reason.cue, Cue::Visible | Cue::Near | Cue::Encounter | Cue::Blocking)
+            // Whoever comes out as the robot drives by is met then; and for what is denied nobody waits.
+            let met = matches!(reason.cue, Cue::Visible | Cue::Near | Cue::Encounter | Cue::Blocking | Cue::Moving)
                 && reason.amount.is_none();
+            let met = met || !clause.acts.is_empty() && clause.acts.iter().all(|act| act.not);
             self.say(own.unwrap_or_else(|| used.first().cloned().unwrap_or(0..0)), Says::Then(reason.clone(), !met));
         }
         self.with_the_rest(clause, start, &when, used);
@@ -192,6 +209,7 @@ impl Maker<'_> {
             |reason: &Reason<Named>| matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed | Cue::Stopped);
         let walks = relation.is_some_and(|relation| !relation.stands()) || frame.plain && frame.goes && !act.not;
         let sets_off = walks && (whole.when.iter().any(sets_off) || whole.clause.after_s.is_some());
+        let none = who.iter().any(|noun| noun.pick == Pick::None);
         let does = frame
             .denied
             .filter(|_| act.not)
@@ -209,7 +227,8 @@ impl Maker<'_> {
             let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m.map(|m| m.value) };
             self.say(tokens.clone(), Says::Introduce(who));
             self.say(tokens, Says::Then(reason, false));
-        } else if frame.asks {
+        } else if frame.asks || frame.relate == Some(Relation::Leaving) && none {
+            // `nobody gets out`: then all stay, of whom nothing was read.
             self.say(tokens, Says::NotRead);
         } else if relation.is_none() && !frame.group {
             // What is denied, or says no more than that somebody is there.
@@ -293,7 +312,9 @@ impl Maker<'_> {
         }
         if let Some(cue) = cue {
             let amount = whole.clause.within_m.filter(|_| cue == Cue::Near).map(|m| m.value);
-            self.say(tokens, Says::Then(Reason { who: None, cue, sign: None, amount }, false));
+            // `Robot within 1 m.`: somebody waits for that.
+            let waits = cue == Cue::Near && amount.is_some();
+            self.say(tokens, Says::Then(Reason { who: None, cue, sign: None, amount }, waits));
         }
     }
 
@@ -338,8 +359,15 @@ impl Maker<'_> {
             }
             () => 3,
         };
+        let stands = |act: &Predicate| frame(act).is_some_and(|frame| frame.relate == Some(Relation::Static));
+        let waits = !robot && clause.acts.iter().any(stands);
         for (number, At { class, to, from, via, tokens }) in clause.places.iter().enumerate() {
             let part = part.filter(|_| number == 0);
+            // Whoever comes out of a room is met where it is told beside.
+            let leaves =
+                |act: &Predicate| !act.not && frame(act).is_some_and(|frame| frame.relate == Some(Relation::Leaving));
+            let leaves = !robot && number == 0 && clause.acts.iter().any(leaves);
+            let rank = if leaves && matches!(class, Some(PlaceClass::Room | PlaceClass::Elevator)) { 1 } else { rank };
             let says = match class {
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
@@ -352,15 +380,13 @@ impl Maker<'_> {
                 }
                 Some(class) if part == Some(Part::Start) => Says::RobotStart(*class),
                 Some(class) if part == Some(Part::Goal) => Says::RobotGoal(*class),
+                // `waits for the elevator`: there is nobody in it.
+                Some(_) if *to && waits => Says::Background(Background::Setting),
                 Some(class) => Says::Happens(*class, if *to { 1 } else { rank }),
             };
             self.say(tokens.0..tokens.1, says);
-            let leaves =
-                |act: &Predicate| !act.not && frame(act).is_some_and(|frame| frame.relate == Some(Relation::Leaving));
             if let Some(class @ (PlaceClass::Room | PlaceClass::Elevator)) = class
-                && !robot
-                && number == 0
-                && clause.acts.iter().any(leaves)
+                && leaves
             {
                 self.say(tokens.0..tokens.1, Says::From(clause.subject.clone(), *class));
             }

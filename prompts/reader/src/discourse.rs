@@ -41,7 +41,8 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
         }
     }
     cast.doubts.extend(cast.waiting.take());
-    let told = Told { roles: cast.roles, vague: cast.vague, plain: cast.plain, statements: told, doubts: cast.doubts };
+    let Cast { roles, vague, plain, doubts, .. } = cast;
+    let told = Told { roles, vague, plain, statements: told, doubts };
     Told { statements: doubted(&told), ..told }
 }
 
@@ -193,7 +194,11 @@ impl Cast {
                 self.related = None;
                 let deed = self.deed(deed);
                 // Of nobody nothing can be played.
-                if deed.who.is_empty() { Says::NotRead } else { Says::Do(deed) }
+                match (deed.who.is_empty(), deed.not) {
+                    (false, _) => Says::Do(deed),
+                    (true, true) => Says::Noted(People::new()),
+                    (true, false) => Says::NotRead,
+                }
             }
             Says::RobotSays(sign, to) => {
                 let to = to.as_ref().map(|to| self.people(to));

@@ -35,6 +35,7 @@ mod chunk;
 mod find;
 
 mod clause;
+mod described;
 mod parser;
 mod predicate;
 mod sentence;
@@ -55,6 +56,8 @@ mod story;
 mod told;
 
 mod form;
+
+mod kept;
 
 mod account;
 

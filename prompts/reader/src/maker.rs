@@ -1,5 +1,6 @@
 //! Makes statements: says what a piece of a clause is, by its tokens.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use socrates_model::statement::Background;
@@ -17,6 +18,15 @@ pub(crate) struct Maker<'a> {
     pub(crate) tells: bool,
     pub(crate) partly: bool,
     pub(crate) asks: bool,
+    /// Tokens of conditions for which somebody does something.
+    pub(crate) answered: BTreeSet<(usize, usize)>,
+}
+
+impl<'a> Maker<'a> {
+    pub(crate) fn new(lexicon: &'a Lexicon) -> Self {
+        let (found, answered) = (Vec::new(), BTreeSet::new());
+        Self { lexicon, found, first: false, tells: false, partly: false, asks: false, answered }
+    }
 }
 
 impl Maker<'_> {
@@ -76,7 +86,11 @@ impl Maker<'_> {
         for run in runs(&clause.looks) {
             self.say(run, Says::Background(reason));
         }
-        for run in runs(&clause.left) {
+        for run in runs(&clause.described) {
+            self.say(run, Says::Background(if robot { Background::Errand } else { Background::Setting }));
+        }
+        let left: Vec<usize> = clause.left.iter().copied().filter(|at| !clause.described.contains(at)).collect();
+        for run in runs(&left) {
             self.say(run, Says::NotRead);
         }
     }

@@ -122,6 +122,10 @@ fn scoped(tokens: Vec<Token>, lexicon: &Lexicon) -> Scene {
             if at == first {
                 first = end;
             }
+            // `because two operators cross`: what is told of somebody who is new is a clause of its own.
+            let own = row.extent == Extent::Clause && tokens.get(end).is_some_and(Token::is_said);
+            let comma = tokens.get(at).filter(|_| own && at > 0 && tokens.get(at - 1).is_none_or(Token::is_said));
+            scene.tokens.extend(comma.map(|because| Token { kind: Kind::Mark(Mark::Comma), ..because.clone() }));
             at = end;
             continue;
         }

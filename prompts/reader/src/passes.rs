@@ -62,7 +62,7 @@ impl<'a> Passes<'a> {
 
     /// What became of every piece.
     fn pieces(&self) -> Vec<Piece> {
-        let mut pieces = account(&self.text, &self.scene, &self.clauses, &self.told, &self.telling);
+        let mut pieces = account(&self.text, &self.scene, (&self.chunks, &self.clauses), &self.told, &self.telling);
         let aside = |piece: &&mut Piece| piece.clause.is_none() && matches!(piece.fate, Fate::Background(_));
         for piece in pieces.iter_mut().filter(aside) {
             // What asks for nothing, and has somebody do something all the same, is not read.

@@ -3,6 +3,7 @@
 use crate::chunk::{Amount, Chunk, Is};
 use crate::clause::{At, Clause, Measure, Predicate};
 use crate::find::{Found, longest};
+use crate::noun::Noun;
 use crate::noun::{BRISK_MPS, Head, Pick, SLOW_MPS};
 use crate::parser::{Parser, names_somebody, says_nothing};
 use crate::token::{Bent, Mark, Sort};
@@ -113,6 +114,10 @@ impl Parser<'_> {
             if let Some(last) = clause.acts.last_mut() {
                 last.not = !last.not;
             }
+        } else if chunk.word(Sort::No) && self.lacks_a_thing() {
+            clause.looks.extend(chunk.tokens.clone());
+        } else if chunk.word(Sort::Other) && self.before().is_some_and(|before| before.word(Sort::Every)) {
+            clause.goes.push(chunk.tokens.clone());
         } else if chunk.word(Sort::Not) || chunk.word(Sort::Nobody) || chunk.word(Sort::No) {
             clause.not = true;
             clause.never |= chunk.word(Sort::Never);
@@ -136,7 +141,8 @@ impl Parser<'_> {
     /// `let a guard stop it`: what is asked for is that the guard does it.
     fn lets_somebody(&self, clause: &Clause) -> bool {
         let lets = self.peek().is_some_and(|chunk| chunk.word(Sort::Lets) && chunk.bent == Bent::Base);
-        let somebody = self.ahead(1).and_then(Chunk::noun).is_some_and(|noun| noun.pick == Pick::Some);
+        let meant = |noun: &Noun| noun.pick == Pick::Some || matches!(noun.head, Head::He | Head::They);
+        let somebody = self.ahead(1).and_then(Chunk::noun).is_some_and(meant);
         lets && somebody && clause.is_bare() && !clause.own && clause.subject.is_empty()
     }
 
@@ -145,6 +151,13 @@ impl Parser<'_> {
         let bent =
             self.peek().is_some_and(|chunk| matches!(chunk.bent, Bent::S | Bent::Ed) && !chunk.word(Sort::Looks));
         bent && self.before().and_then(Chunk::noun).is_some_and(names_somebody)
+    }
+
+    /// `no truck`: nobody has one.
+    fn lacks_a_thing(&self) -> bool {
+        let thing = |next: &Chunk| next.word(Sort::Thing) && next.is == Is::Word;
+        let acts = longest(self.chunks, self.at + 1, &self.lexicon.frame_patterns).is_some();
+        self.ahead(1).is_some_and(thing) && !acts
     }
 
     /// `two racks`: a number of things.
@@ -198,7 +211,9 @@ impl Parser<'_> {
             return;
         }
         let mut sign = frame.and_then(|frame| frame.says);
-        if frame.is_some_and(|frame| frame.asks) {
+        // `signals it to wait. Two operators cross`: what is asked for is in the row, and nobody else is asked.
+        let told = sign.is_some() && self.peek().is_some_and(|next| next.noun().is_some());
+        if frame.is_some_and(|frame| frame.asks) && !told {
             sign = self.speech().or(sign);
         }
         // `says "follow me" to two students`

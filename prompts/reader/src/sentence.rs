@@ -82,7 +82,10 @@ impl Parser<'_> {
         let condition = self.condition(tie);
         let first = own.first;
         let more = self.peek().is_some_and(|next| !next.is_mark(Mark::Stop));
-        let before = self.found.len() > first && (!own.apart || !more || tie == Tie::Unless);
+        // `he does, when it is near, and waves`: of what stands before it.
+        let closed = self.peek().is_some_and(|next| next.is_mark(Mark::Comma))
+            && self.ahead(1).is_some_and(|next| next.word(Sort::And) || next.word(Sort::But));
+        let before = self.found.len() > first && (!own.apart || !more || closed || tie == Tie::Unless);
         let said = self.found.get(first..).unwrap_or_default();
         let acts = said.iter().rposition(|clause| !clause.acts.is_empty() || clause.does.is_some());
         let clause = acts.filter(|_| !more).map(|at| first + at).or_else(|| self.found.len().checked_sub(1));
@@ -123,6 +126,15 @@ impl Parser<'_> {
             match self.found.last_mut().filter(|_| opened.is_some_and(|before| before.is_mark(Mark::Open))) {
                 Some(last) => last.conditions.push(condition),
                 None => own.pending.push(condition),
+            }
+            return;
+        }
+        // `when it is close (1 m)`
+        let bare = clause.acts.is_empty() && !clause.own && clause.places.is_empty() && clause.left.is_empty();
+        if let Some(condition) = own.pending.last_mut().filter(|_| bare && clause.within_m.is_some()) {
+            condition.clause.within_m = condition.clause.within_m.or(clause.within_m);
+            if let Some(ahead) = own.ahead.last_mut() {
+                ahead.clause.within_m = ahead.clause.within_m.or(clause.within_m);
             }
             return;
         }
@@ -192,6 +204,7 @@ impl Parser<'_> {
         last.after_s = last.after_s.or(clause.after_s);
         last.places.extend(&clause.places);
         last.left.extend(&clause.left);
+        last.described.extend(&clause.described);
         last.looks.extend(&clause.looks);
         if last.conditions.is_empty() || when {
             last.conditions.clone_from(&clause.conditions);
@@ -275,13 +288,15 @@ impl Parser<'_> {
                 || next.word(Sort::Verb) && next.bent == Bent::Ed
         };
         let person = next.is_some_and(follows);
+        // `the same direction as the robot` compares.
+        let compares = self.before().is_some_and(|before| before.word(Sort::Empty));
         let tie = match () {
             () if chunk.word(Sort::Until) => Tie::Until,
             () if chunk.word(Sort::Unless) => Tie::Unless,
             () if chunk.word(Sort::When) => Tie::When,
             () if chunk.word(Sort::Before) && person => Tie::Before,
             () if chunk.word(Sort::After) && person => Tie::After,
-            () if chunk.word(Sort::While) && person => Tie::While,
+            () if chunk.word(Sort::While) && person && !compares => Tie::While,
             () => return None,
         };
         (tie == Tie::Until || next.is_some_and(|next| !matches!(next.is, Is::Amount(_)))).then_some(tie)
@@ -305,7 +320,7 @@ impl Parser<'_> {
     }
 
     pub(crate) fn clause(&mut self, join: Join, inner: bool) -> Clause {
-        let mut clause = Clause::new(join, self.token());
+        let (start, mut clause) = (self.at, Clause::new(join, self.token()));
         clause.not = self.denied && join == Join::And && self.before().is_some_and(|before| before.word(Sort::Or));
         clause.own = self.relative(&mut clause);
         while let Some(chunk) = self.peek() {
@@ -354,6 +369,12 @@ impl Parser<'_> {
         }
         self.denied = clause.not || clause.acts.iter().any(|act| act.not);
         self.keep_subject(&mut clause, inner);
+        // `the other won't`
+        let denied = !clause.denials.is_empty() && clause.own && clause.acts.is_empty();
+        if denied && clause.left.is_empty() && clause.places.is_empty() {
+            clause.does = Some(false);
+        }
+        self.describe(start, inner, &mut clause);
         clause.tokens.end = self.token();
         clause
     }
@@ -393,6 +414,13 @@ impl Parser<'_> {
     pub(crate) fn relative(&mut self, clause: &mut Clause) -> bool {
         let who = self.peek().filter(|chunk| chunk.word(Sort::Who)).map(|chunk| chunk.tokens.clone());
         let Some(tokens) = who.filter(|_| self.at > 0) else { return false };
+        // `both of whom the robot asks to wait`: the robot asks.
+        let verb = |chunk: &Chunk| chunk.word(Sort::Verb) && chunk.bent == Bent::S || chunk.word(Sort::Modal);
+        if self.ahead(1).and_then(Chunk::noun).is_some_and(Noun::may_be_robot) && self.ahead(2).is_some_and(verb) {
+            clause.goes.push(tokens);
+            self.at += 1;
+            return false;
+        }
         // `the robot, which asks them to wait`
         let before = self.chunks.get(..self.at).unwrap_or_default();
         let noun = before.iter().rev().find(|chunk| !chunk.is_mark(Mark::Comma)).and_then(Chunk::noun);
@@ -436,6 +464,12 @@ impl Parser<'_> {
                 complete && !by && !turned && noun.tokens.start > 0
             }
             Is::Word if chunk.word(Sort::And) || chunk.word(Sort::But) || chunk.word(Sort::Or) => true,
+            // `the robot drives on with a manager walking beside it`: the manager walks.
+            Is::Word if chunk.word(Sort::With) => {
+                let noun = self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody);
+                let doing = |next: &Chunk| next.word(Sort::Verb) && next.bent == Bent::Ing;
+                noun && self.ahead(2).is_some_and(doing) && !clause.is_bare()
+            }
             // `the robot then asks` is one clause.
             Is::Word if chunk.word(Sort::Then) => !(clause.own && clause.is_bare()),
             Is::Word if chunk.word(Sort::While) && self.ahead(1).and_then(Chunk::noun).is_some_and(names_somebody) => {

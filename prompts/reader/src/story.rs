@@ -395,7 +395,7 @@ impl Story {
     /// others who have a role. Mostly something that tells of them was not made out.
     fn unplaced(&self) -> People {
         let placed = |person: &Person| {
-            let comes = |step: &Step| step.act == Act::Follow;
+            let comes = |step: &Step| matches!(step.act, Act::Follow | Act::Approach | Act::RunAway);
             let group = |other: &&Person| person.group.is_some() && other.group == person.group;
             person.relation.is_some()
                 || person.steps.iter().any(comes)
@@ -407,7 +407,7 @@ impl Story {
         let less = |person: &Person| {
             any_placed && !placed(person)
                 || any_role && anybody(person)
-                || person.relation.is_none() && person.steps.is_empty() && self.people.len() > 1
+                || person.relation.is_none() && person.steps.is_empty()
         };
         self.people.iter().enumerate().filter(|(_, person)| less(person)).map(|(at, _)| at).collect()
     }

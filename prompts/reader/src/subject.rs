@@ -128,6 +128,8 @@ impl Parser<'_> {
             (_, Some(count)) if all.generic && count == people => clause.subject = told,
             _ => return false,
         }
+        let tokens = |at: usize| self.chunks.get(at).map_or(0, |chunk| chunk.tokens.start);
+        clause.goes.push(tokens(self.at)..tokens(at));
         self.at = at + 1;
         true
     }
@@ -141,6 +143,7 @@ impl Parser<'_> {
         let count = usize::try_from(first.count.unwrap_or(1)).unwrap_or(1);
         if !all.is_empty() && all.len() == rest.len() && all.len() == count && matches!(first.head, Head::Role(_)) {
             let first = Noun { names: all, ..first.clone() };
+            clause.goes.extend(rest.iter().map(|noun| noun.tokens.clone()));
             clause.subject = vec![first];
             return;
         }
@@ -150,6 +153,7 @@ impl Parser<'_> {
         let anybody = first.generic || first.group && matches!(&first.head, Head::Role(role) if role == "person");
         if anybody && roles && rest.len() > 1 && first.count == Some(people) {
             clause.group = first.group;
+            clause.goes.push(first.tokens.clone());
             clause.subject = rest.to_vec();
         }
     }
@@ -167,6 +171,7 @@ impl Parser<'_> {
         // `the driver (actor 1)`
         if let (true, Head::Name(name), Some(last)) = (opens, &noun.head, clause.subject.last_mut()) {
             last.names.push(name.clone());
+            clause.goes.push(noun.tokens.clone());
             self.at += 3;
             return true;
         }
@@ -182,6 +187,7 @@ impl Parser<'_> {
             && self.peek().is_some_and(|chunk| chunk.is_mark(Mark::Comma))
             && !self.ahead(3).is_some_and(|next| next.word(Sort::And) || next.noun().is_some())
         {
+            clause.goes.push(noun.tokens.clone());
             self.at += 3;
             return true;
         }
@@ -213,6 +219,7 @@ impl Parser<'_> {
         if !(marks(self.peek()) || colon) || self.ahead(2).is_some_and(acts) {
             return false;
         }
+        clause.goes.push(noun.tokens.clone());
         for noun in clause.subject.iter_mut().skip(from) {
             noun.beside = Some(role.clone());
         }

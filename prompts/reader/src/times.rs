@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use socrates_model::statement::Background;
+
 use crate::clause::{Clause, Condition, Join, Predicate, Tie};
 use crate::maker::Maker;
 use crate::noun::{Head, Noun, Pick};
@@ -94,7 +96,9 @@ impl Maker<'_> {
                     self.lexicon.frames.get(act.row).is_some_and(|frame| frame.part == Some(Part::There))
                 };
                 let robot = condition.clause.subject.iter().any(|noun| self.is_robot(noun, &condition.clause));
-                self.places(&condition.clause, robot && condition.clause.acts.iter().any(part));
+                // `while it drives from the ward to the exit`
+                let drives = condition.tie == Tie::While && condition.clause.places.iter().any(|at| at.from);
+                self.places(&condition.clause, robot && (drives || condition.clause.acts.iter().any(part)));
                 self.rest(&condition.clause);
             }
             let (reason, tokens) = found.map_or((None, Vec::new()), |(reason, tokens)| (Some(reason), tokens));
@@ -217,10 +221,16 @@ impl Maker<'_> {
         let then = own.iter().any(|own| matches!(own.says, Says::Then(..)));
         // Whoever is met is met as the robot comes by: such a reason holds of where somebody comes from as well.
         let met = when.iter().all(|reason| !matches!(reason.cue, Cue::After | Cue::Says | Cue::Passed));
-        let plain = |act: &Predicate| self.lexicon.frames.get(act.row).is_some_and(|frame| frame.plain);
-        if done || clause.acts.iter().any(|act| act.not && plain(act)) {
+        if done || clause.acts.iter().any(|act| act.not) {
             for tokens in &clause.denials {
                 self.goes(tokens.clone());
+            }
+        }
+        // `the robot can't get through`: nobody has to do anything about it.
+        let robot = !clause.subject.is_empty() && clause.subject.iter().all(|noun| self.is_robot(noun, clause));
+        if robot && !any {
+            for tokens in clause.subject.iter().map(|noun| &noun.tokens).chain(&clause.denials) {
+                self.say(tokens.clone(), Says::Background(Background::Errand));
             }
         }
         if any {
@@ -229,6 +239,10 @@ impl Maker<'_> {
             for tokens in &clause.goes {
                 self.goes(tokens.clone());
             }
+        }
+        let amounts_of_robot = [clause.lasts_s, clause.after_s, clause.within_m].into_iter().flatten();
+        for amount in amounts_of_robot.filter(|_| robot && !done && !then) {
+            self.say(amount.from..amount.to, Says::Background(Background::Errand));
         }
         if done || then || met {
             for tokens in used {

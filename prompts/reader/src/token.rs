@@ -75,6 +75,10 @@ pub(crate) enum Sort {
     Label,
     /// A role towards others: `colleague`.
     Mate,
+    /// Tells beside whom somebody is: `behind him`.
+    Beside,
+    /// Says that it does not quite happen: `nearly`.
+    Hedge,
     /// Denies it for the whole run: `never`.
     Never,
     /// Before what somebody is let do: `lets her go`.

@@ -111,6 +111,32 @@ fn what_goes_into_no_statement_is_said_to_be_not_read() {
 }
 
 #[test]
+fn words_that_describe_ask_for_nothing() {
+    for (text, lost) in [
+        // Where somebody stands, what the robot does beside its way, a heading, and beside whom somebody is.
+        ("A porter waits near the aquarium.", vec![]),
+        ("The robot hums along the corridor. A nurse stops.", vec![]),
+        ("Politeness study: a nurse stops.", vec![]),
+        ("A nurse stops. Her colleague stands behind her.", vec![]),
+        // Somebody who was not made out, and what does not quite happen.
+        ("A nurse stops near a juggler.", vec!["juggler"]),
+        ("A nurse nearly stops.", vec!["nearly"]),
+    ] {
+        assert_eq!(not_read(text), lost, "{text}");
+    }
+}
+
+#[test]
+fn of_two_of_whom_she_and_he_are_guessed_the_second_is_doubted() {
+    let text = "A nurse crosses the corridor, and a doctor comes towards the robot. She stops. He looks at it.";
+    assert_eq!(not_read(text), ["He"]);
+    assert_eq!(
+        not_read("A woman crosses the corridor, and a man comes towards the robot. She stops. He looks at it."),
+        [""; 0]
+    );
+}
+
+#[test]
 fn a_clause_may_be_read_in_part() {
     let text = "A nurse yodels in the corridor. She stops when she sees the robot. The weather yodels.";
     let verdicts: Vec<Verdict> =

@@ -36,6 +36,7 @@ fn shipped_requests_are_read_as_by_the_grammar() {
                 reading.humans.iter().map(|human| (human.role.clone(), human.relation, human.rules.clone())).collect()
             };
             assert_eq!(told(&small), told(&grammar), "{location}/{name}");
+            assert_eq!(small.missing(), grammar.missing(), "{location}/{name}");
             read += 1;
         }
     }
