@@ -16,4 +16,5 @@ mod python;
 mod readers;
 mod strangers;
 mod studies;
+mod surveys;
 mod terminals;

@@ -17,6 +17,7 @@ mod folders;
 mod judges;
 mod kept;
 mod keys;
+pub(crate) mod kits;
 mod leaving;
 mod libraries;
 mod live;

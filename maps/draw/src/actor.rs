@@ -1,6 +1,6 @@
 //! Robot, people, their trails, gestures and doors at one moment, seen from above.
 
-use socrates_model::{AgentState, EventKind, Location, Recording};
+use socrates_model::{AgentState, Door, EventKind, Location, Recording};
 
 use crate::label::{Area, text_width};
 use crate::map_layer::Frame;
@@ -27,6 +27,8 @@ pub(crate) struct Look {
     pub(crate) text_px: f64,
     /// Whether names are written.
     names: bool,
+    /// Whether it is shown where everybody came from.
+    trails: bool,
     /// Whether humans are too many for names and long trails.
     crowd: bool,
     /// Pixels per meter.
@@ -52,7 +54,12 @@ impl Look {
         bounds: Area,
     ) -> Self {
         let crowd = recording.header.agents.len() > CROWD;
-        Self { text_px, names, crowd, px_per_m, least_px, bounds }
+        Self { text_px, names, trails: true, crowd, px_per_m, least_px, bounds }
+    }
+
+    /// The same without trails.
+    pub(crate) const fn without_trails(self) -> Self {
+        Self { trails: false, ..self }
     }
 
     /// Whether an agent's name is written.
@@ -74,19 +81,19 @@ pub(crate) fn moment(recording: &Recording, now_s: f64) -> &[AgentState] {
     recording.tick(tick)
 }
 
+/// Whether a door stands open at a moment.
+pub(crate) fn is_open(door: &Door, recording: &Recording, now_s: f64) -> bool {
+    let mut told = recording.events.iter().filter(|event| event.time.secs() <= now_s + 1e-9).filter_map(|event| {
+        let EventKind::Door { door: id, open } = &event.kind else { return None };
+        (*id == door.id).then_some(*open)
+    });
+    told.next_back().unwrap_or(false)
+}
+
 /// Draws the doors as they stand at a moment: a closed door is a bar, an open one two stubs.
 pub(crate) fn draw_doors(svg: &mut Svg, location: &Location, frame: &Frame, recording: &Recording, now_s: f64) {
     for door in &location.doors {
-        let open = recording
-            .events
-            .iter()
-            .filter(|event| event.time.secs() <= now_s + 1e-9)
-            .filter_map(|event| {
-                let EventKind::Door { door: id, open } = &event.kind else { return None };
-                (*id == door.id).then_some(*open)
-            })
-            .next_back()
-            .unwrap_or(false);
+        let open = is_open(door, recording, now_s);
         let (from, to) = (frame.px(location, &door.from), frame.px(location, &door.to));
         let part = if open { 0.14 } else { 0.5 };
         let (dx, dy) = ((to.0 - from.0) * part, (to.1 - from.1) * part);
@@ -113,7 +120,7 @@ pub(crate) fn draw_everybody(
         let info = recording.header.agents.iter().find(|info| info.agent == state.agent_id());
         look.radius_px(info.map_or(0.28, |info| info.radius_m))
     };
-    for state in states.iter().rev() {
+    for state in states.iter().rev().filter(|_| look.trails) {
         draw_trail(svg, location, frame, recording, state, now_s, look);
     }
     for state in states.iter().rev() {

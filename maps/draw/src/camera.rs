@@ -68,6 +68,22 @@ impl Camera {
         (from_s, to_s): (f64, f64),
         (view, safe): (Area, Area),
     ) -> Self {
+        Self::near(location, all, Some(run), (from_s, to_s), (view, safe))
+    }
+
+    /// The camera that stands still whatever happens, the same for all these runs: as near as it can be for all of them.
+    pub(crate) fn still(location: &Location, all: &[&Recording], part: (f64, f64), (view, safe): (Area, Area)) -> Self {
+        Self::near(location, all, None, part, (view, safe))
+    }
+
+    /// As near as it should be; it follows the run, where one is named and where not all can be seen at once.
+    fn near(
+        location: &Location,
+        all: &[&Recording],
+        run: Option<&Recording>,
+        (from_s, to_s): (f64, f64),
+        (view, safe): (Area, Area),
+    ) -> Self {
         let radii = all.iter().flat_map(|run| &run.header.agents).map(|info| info.radius_m);
         let radius_m = radii.fold(f64::MAX, f64::min).clamp(LEAST_RADIUS_M, 1.0);
         let cell_m = location.grid.resolution_m.max(1e-6);
@@ -90,12 +106,13 @@ impl Camera {
         };
         let room = 2.0 * ROOM_M * least;
         let fits = (safe.w / (right - left + room)).min(safe.h / (bottom - top + room));
-        if fits >= 1.0 {
-            let nearer = fits.min(NEARER);
-            camera.world = world(least * nearer);
-            camera.centers.push((f64::midpoint(left, right) * nearer, f64::midpoint(top, bottom) * nearer));
-        } else {
-            camera.centers = camera.way(location, run, &moments);
+        match run.filter(|_| fits < 1.0) {
+            Some(run) => camera.centers = camera.way(location, run, &moments),
+            None => {
+                let nearer = fits.min(NEARER);
+                camera.world = world(least * nearer);
+                camera.centers.push((f64::midpoint(left, right) * nearer, f64::midpoint(top, bottom) * nearer));
+            }
         }
         let ends: Vec<(f64, f64)> = camera.centers.iter().map(|center| camera.within(*center)).collect();
         camera.centers = ends;

@@ -1,10 +1,11 @@
 //! The film of a scenario: seen from above, near enough to see people, after what happens.
 
-use socrates_model::{Action, Location, Recording, Report};
+use socrates_model::{Action, HumanId, Location, Recording, Report};
 
 use crate::actor::{self, Look, text_px};
 use crate::camera::{Camera, least_px};
 use crate::film_cards::{draw_end, draw_title};
+use crate::film_eyes::Eyes;
 use crate::film_times::{FIRST_SECS, Times};
 use crate::label::{Area, text_width, wrapped};
 use crate::map_layer::{draw_floor, wall_areas};
@@ -19,8 +20,20 @@ pub const PANELS: usize = 4;
 const CAPTION_SECS: f64 = 2.0;
 /// So many are told at once.
 const CAPTIONS: usize = 3;
+/// Least radius of an agent in films that are to be alike, px: so far away that it could not be seen at its own size.
+const LEAST_ALIKE_PX: f64 = 5.0;
 /// Height of a line of words, in heights of its letters.
 pub(crate) const LINE: f64 = 1.5;
+
+/// Where a film is seen from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Seen {
+    /// From above.
+    #[default]
+    Above,
+    /// By one of the people, who look where they go.
+    By(HumanId),
+}
 
 /// How a film is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +46,18 @@ pub struct FilmOptions {
     pub labels: bool,
     /// Simulated seconds per second; `None`: 1, or as fast as is needed to show all that happens in 20 s.
     pub speed: Option<f64>,
+    /// Where it is seen from.
+    pub seen: Seen,
+    /// The part of the run that is shown, s; `None`: around what happens. After its end a run stands still.
+    pub part: Option<(f64, f64)>,
+    /// Whether films of different runs are to differ in nothing but what happens: the camera stands still, and nobody leaves a trail.
+    pub alike: bool,
+}
+
+impl FilmOptions {
+    /// 1280 by 720 px, 30 pictures a second, from above, with labels.
+    pub const USUAL: Self =
+        Self { size: (1280, 720), fps: 30, labels: true, speed: None, seen: Seen::Above, part: None, alike: false };
 }
 
 /// A run that a film shows, with what became of it for the card at the end.
@@ -72,9 +97,46 @@ pub enum FilmError {
         /// Asked height, px.
         height: u32,
     },
+    /// A part that is none.
+    #[error("from {from_s} s to {to_s} s is no part of a run")]
+    Part {
+        /// Its first moment, s.
+        from_s: f64,
+        /// Its last moment, s.
+        to_s: f64,
+    },
+    /// Nothing can be seen by somebody who is not there.
+    #[error(
+        "`{who}` is not in the run `{run}` at {at_s:.1} s, so nothing can be shown as they see it; people of the run: {people}"
+    )]
+    Absent {
+        /// Who.
+        who: HumanId,
+        /// The run.
+        run: String,
+        /// When, s of the run.
+        at_s: f64,
+        /// Who is there.
+        people: String,
+    },
     /// A picture could not be drawn.
     #[error("a picture of the film cannot be drawn")]
     Picture(#[source] PngError),
+}
+
+/// A film as a page plays it: see [`Film::strip`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strip {
+    /// Width and height, drawing units.
+    pub size: (u32, u32),
+    /// Pictures per second.
+    pub fps: u32,
+    /// Length, s.
+    pub length_s: f64,
+    /// What stays.
+    pub ground: String,
+    /// What moves, picture by picture.
+    pub pictures: Vec<String>,
 }
 
 /// A film, ready to be drawn picture by picture.
@@ -102,6 +164,8 @@ pub(crate) struct Panel<'a> {
     pub(crate) title: String,
     pub(crate) look: Look,
     pub(crate) captions: Vec<(f64, String)>,
+    /// Whose eyes it is seen with; none from above.
+    pub(crate) eyes: Option<Eyes<'a>>,
 }
 
 impl Panel<'_> {
@@ -125,6 +189,29 @@ impl Panel<'_> {
         let (size, area) = (self.look.text_px, self.caption(row, words));
         svg.rect((area.x, area.y), (area.w, area.h), "fill=\"#ffffff\" fill-opacity=\"0.88\"");
         svg.heading((area.x + size * 0.4, area.y + size * 1.1), words, size, palette::INK);
+    }
+
+    /// Draws what stays where it is while the camera does.
+    fn draw_ground(&self, svg: &mut Svg, now_s: f64) {
+        if let Some(eyes) = &self.eyes {
+            eyes.draw_ground(svg);
+            return;
+        }
+        let view = self.view;
+        svg.rect((view.x, view.y), (view.w, view.h), &format!("fill=\"{}\"", palette::UNKNOWN));
+        draw_floor(svg, self.location, &self.camera.part(now_s));
+    }
+
+    /// Draws what moves.
+    fn draw_moving(&self, svg: &mut Svg, now_s: f64, labels: bool) {
+        if let Some(eyes) = &self.eyes {
+            eyes.draw(svg, now_s, self.look.text_px);
+            return;
+        }
+        let (frame, part) = (self.camera.frame(now_s), self.camera.part(now_s));
+        actor::draw_doors(svg, self.location, &frame, self.recording, now_s);
+        let walls = if labels { wall_areas(self.location, &part) } else { Vec::new() };
+        actor::draw_everybody(svg, self.location, &frame, self.recording, now_s, &self.look, &walls);
     }
 
     /// What is told at a moment, the newest first, for so many seconds of the run.
@@ -174,14 +261,21 @@ impl<'a> Film<'a> {
             let at = ((index % 2) as f64 * (size.0 + gap), (index / 2) as f64 * (size.1 + gap));
             let (view, safe) = parts(at, size, text_px(h / rows), options.labels);
             let recording = shown.recording;
-            let camera = Camera::of(location, all, recording, (times.from_s, times.to_s), (view, safe));
-            let look = Look::new(
-                recording,
-                (camera.px_per_m(location), least_px(view.h) / 2.0),
-                text_px(h / rows),
-                options.labels,
-                safe,
-            );
+            let eyes = match options.seen {
+                Seen::Above => None,
+                Seen::By(who) => Some(Eyes::of(location, recording, who, view, (times.from_s, times.to_s))?),
+            };
+            let part = (times.from_s, times.to_s);
+            let camera = if options.alike {
+                Camera::still(location, all, part, (view, safe))
+            } else {
+                Camera::of(location, all, recording, part, (view, safe))
+            };
+            // Who is drawn larger than they are seems to touch others.
+            let least = if options.alike { LEAST_ALIKE_PX } else { least_px(view.h) / 2.0 };
+            let look =
+                Look::new(recording, (camera.px_per_m(location), least), text_px(h / rows), options.labels, safe);
+            let look = if options.alike { look.without_trails() } else { look };
             let itself = || format!("{} · seed {}", recording.header.planner, recording.header.seed);
             let title = shown.name.clone().unwrap_or_else(itself);
             let mut captions = captions(recording);
@@ -200,6 +294,7 @@ impl<'a> Film<'a> {
                 title,
                 look,
                 captions,
+                eyes,
             });
         }
         let mut ground = Svg::new(w, h);
@@ -216,6 +311,28 @@ impl<'a> Film<'a> {
         self.ground.with(&self.drawing(self.times.picture_s(index))).map_err(FilmError::Picture)
     }
 
+    /// A film of one run for a page: its ground, and what moves on it so many times a second, as parts of an SVG of the film's size.
+    /// Nothing of it names a planner. A picture like the one before is left empty. For films that are [`FilmOptions::alike`]: the ground is
+    /// that of a camera that stands still.
+    #[must_use]
+    pub fn strip(&self, fps: u32) -> Strip {
+        let times = Times { fps: fps.max(1), ..self.times };
+        let (mut ground, mut pictures) = (Svg::part(), Vec::new());
+        let mut before = String::new();
+        if let Some(panel) = self.panels.first() {
+            panel.draw_ground(&mut ground, times.from_s);
+            for index in 0..times.pictures() {
+                let mut svg = Svg::part();
+                panel.draw_moving(&mut svg, times.moment_s(index), false);
+                let picture = svg.text_so_far();
+                pictures.push(if picture == before { String::new() } else { picture.clone() });
+                before = picture;
+            }
+        }
+        let length_s = self.times.length_s();
+        Strip { size: self.options.size, fps: times.fps, length_s, ground: ground.text_so_far(), pictures }
+    }
+
     /// The picture at a time of the film as SVG, without the white below it.
     pub(crate) fn drawing(&self, film_s: f64) -> String {
         let now_s = self.times.at_film_s(film_s);
@@ -226,12 +343,8 @@ impl<'a> Film<'a> {
             svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
             svg.rect((view.x, view.y), (view.w, view.h), "");
             svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
-            svg.rect((view.x, view.y), (view.w, view.h), &format!("fill=\"{}\"", palette::UNKNOWN));
-            let (frame, part) = (panel.camera.frame(now_s), panel.camera.part(now_s));
-            draw_floor(&mut svg, panel.location, &part);
-            actor::draw_doors(&mut svg, panel.location, &frame, panel.recording, now_s);
-            let walls = if self.options.labels { wall_areas(panel.location, &part) } else { Vec::new() };
-            actor::draw_everybody(&mut svg, panel.location, &frame, panel.recording, now_s, &panel.look, &walls);
+            panel.draw_ground(&mut svg, now_s);
+            panel.draw_moving(&mut svg, now_s, self.options.labels);
             svg.raw("</g>");
             if self.options.labels {
                 self.draw_words(&mut svg, panel, now_s);
@@ -328,7 +441,7 @@ mod tests {
     use super::*;
     use crate::fixture::{hall, report, walk};
 
-    const SMALL: FilmOptions = FilmOptions { size: (320, 180), fps: 10, labels: true, speed: None };
+    const SMALL: FilmOptions = FilmOptions { size: (320, 180), fps: 10, ..FilmOptions::USUAL };
 
     fn bare<'a>(runs: &[&'a Recording]) -> Vec<Shown<'a>> {
         runs.iter().map(|recording| Shown { recording, report: None, name: None }).collect()

@@ -339,7 +339,7 @@ mod tests {
     fn an_animated_film_plays_everybody_and_loads_nothing() {
         let (location, run) = (hall("hall"), walk(3));
         let film = |labels: bool| {
-            let options = FilmOptions { size: (640, 360), fps: 30, labels, speed: None };
+            let options = FilmOptions { size: (640, 360), labels, ..FilmOptions::USUAL };
             let shown = [Shown { recording: &run, report: None, name: None }];
             Film::new(&location, "they meet", &[&run], &shown, options).unwrap().animated_svg()
         };
@@ -351,7 +351,7 @@ mod tests {
         assert_eq!(svg, film(true));
         // Who comes later is hidden until then.
         let late = crate::fixture::away(walk(3), 2, 0..300);
-        let options = FilmOptions { size: (640, 360), fps: 30, labels: true, speed: None };
+        let options = FilmOptions { size: (640, 360), labels: true, ..FilmOptions::USUAL };
         let shown = [Shown { recording: &late, report: None, name: None }];
         let shown = Film::new(&location, "they meet", &[&late], &shown, options).unwrap().animated_svg();
         assert_eq!(shown.matches("<g opacity=\"0\">").count(), svg.matches("<g opacity=\"0\">").count() + 1);

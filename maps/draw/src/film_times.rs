@@ -37,9 +37,16 @@ impl Times {
     /// The times of a film of these runs: from 5 s before the first meeting to 5 s after the last, in all of them.
     ///
     /// # Errors
-    /// [`FilmError::Speed`] for a speed outside 0.1 to 20.
+    /// [`FilmError::Speed`] for a speed outside 0.1 to 20, [`FilmError::Part`] for a part that ends before it begins.
     pub fn of(shown: &[&Recording], options: &FilmOptions) -> Result<Self, FilmError> {
         let cards_s = if options.labels { CARD_SECS } else { (STILL_SECS, STILL_SECS) };
+        if let Some((from_s, to_s)) = options.part {
+            if !(from_s.is_finite() && to_s.is_finite() && 0.0 <= from_s && from_s < to_s) {
+                return Err(FilmError::Part { from_s, to_s });
+            }
+            let speed = options.speed.unwrap_or(1.0);
+            return Ok(Self { from_s, to_s, speed, fps: options.fps.max(1), cards_s });
+        }
         let (from, to) = window(shown);
         let room = LONGEST_SECS - cards_s.0 - cards_s.1;
         let speed = match options.speed {
@@ -68,7 +75,11 @@ impl Times {
     /// Number of pictures.
     #[must_use]
     pub fn pictures(&self) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 20 s")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a film has fewer than 2^53 pictures"
+        )]
         let count = (self.length_s() * f64::from(self.fps)).round() as usize;
         count.max(1)
     }
@@ -111,9 +122,10 @@ pub(crate) fn length_s(recording: &Recording) -> f64 {
     ticks * recording.header.step_s
 }
 
-/// From when to when something happens between robot and people in any of these runs, with some seconds around it; all of
+/// From when to when something happens between robot and people in any of these runs, with some seconds around it, s; all of
 /// them where nothing does.
-fn window(shown: &[&Recording]) -> (f64, f64) {
+#[must_use]
+pub fn window(shown: &[&Recording]) -> (f64, f64) {
     let whole = shown.iter().map(|run| length_s(run)).fold(0.0, f64::max);
     let met: Vec<(f64, f64)> = shown.iter().filter_map(|run| meeting(run)).collect();
     let (first, last) = met.iter().fold((f64::MAX, f64::MIN), |(a, b), (from, to)| (a.min(*from), b.max(*to)));
@@ -173,7 +185,7 @@ mod tests {
     use super::*;
     use crate::fixture::walk;
 
-    const OPTIONS: FilmOptions = FilmOptions { size: (320, 180), fps: 10, labels: true, speed: None };
+    const OPTIONS: FilmOptions = FilmOptions { size: (320, 180), fps: 10, ..FilmOptions::USUAL };
 
     fn long(seconds: usize, met_s: &[u64]) -> Recording {
         let mut run = walk(if met_s.is_empty() { 0 } else { 1 });

@@ -18,6 +18,7 @@ pub mod facts;
 pub mod figure;
 pub mod film;
 mod film_cards;
+pub mod film_eyes;
 mod film_svg;
 pub mod film_times;
 #[cfg(test)]
@@ -49,7 +50,7 @@ pub use compare_page::{Beside, ComparePage, Head, MeanRow, MetricRow, Part, Plan
 pub use draft::draft_picture;
 pub use facts::fact_words;
 pub use figure::{FigureError, figure};
-pub use film::{Film, FilmError, FilmOptions, Shown};
+pub use film::{Film, FilmError, FilmOptions, Seen, Shown, Strip};
 pub use label_page::{Asks, LabelFiles, LabelPage, Labeled};
 pub use page::{Page, ProvenanceRow, StageRow};
 pub use pdf::{PdfError, pdf_from_svg};

@@ -208,6 +208,7 @@ fn film(
         run,
         speed: "auto".to_owned(),
         size: None,
+        from: None,
     };
     video::film(talk, config, &video).map(|_told| ())
 }

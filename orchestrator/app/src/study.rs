@@ -1,4 +1,14 @@
 //! `study`: files around the study of `socrates-study`.
+//!
+//! ```text
+//! bundles ─► new ─► study.toml ─► build ─► kit ─► serve ─► answers ─► read ─► tables ─► analyze ─► report
+//! ```
+
+mod build;
+mod correlate;
+mod new;
+mod scenes;
+mod serve;
 
 use std::path::{Path, PathBuf};
 
@@ -9,12 +19,16 @@ use socrates_study::instrument::Instrument;
 use socrates_study::plan::{Ask, STUDIES, orders, pay, power, raters, smallest_found};
 use socrates_study::rating::Ratings;
 use socrates_study::read::{
-    Codebook, Format, Pseudonyms, format_of, jspsych, own, participants_csv, prolific, qualtrics, ratings_csv,
-    ratings_of_csv,
+    Codebook, Format, Pseudonyms, format_of, jspsych, limesurvey, own, participants_csv, prolific, qualtrics,
+    ratings_csv, ratings_of_csv,
 };
 use socrates_study::simulate::{Truth, simulate as simulated};
 use socrates_study::{Problem, SCRIPT_PYTHON, SCRIPT_R, page, words};
 
+pub use self::build::{BuildOptions, Clips, build};
+pub use self::correlate::{CorrelateOptions, correlate};
+pub use self::new::{NewOptions, new};
+pub use self::serve::{ServeOptions, serve};
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
@@ -248,6 +262,7 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
         ("answers.jsonl", found.own()),
         ("qualtrics.csv", found.qualtrics(&design, true)),
         ("jspsych.csv", found.jspsych(&design)),
+        ("limesurvey.csv", found.limesurvey(&design)),
         ("prolific.csv", found.prolific()),
     ];
     for (file, text) in &texts {
@@ -302,6 +317,7 @@ pub fn read(talk: &Printer, options: &ReadOptions) -> Result<(), Complaint> {
         let part = match format_of(text, file).map_err(|why| bad(&why))? {
             Format::Own => own(text, file, &design, names),
             Format::JsPsych => jspsych(text, file, &design, names),
+            Format::LimeSurvey => limesurvey(text, file, &design, names),
             Format::Qualtrics => qualtrics(text, file, &design, names, &book),
         };
         parts.push((file.clone(), part.map_err(|why| bad(&why))?));
@@ -324,6 +340,25 @@ pub fn read(talk: &Printer, options: &ReadOptions) -> Result<(), Complaint> {
     Ok(())
 }
 
+/// The ratings of a folder of tables, or of a table.
+fn rated(answers: &Path, design: &Design) -> Result<Ratings, Complaint> {
+    let is_folder = answers.is_dir();
+    let ratings = if is_folder { answers.join("ratings.csv") } else { answers.to_path_buf() };
+    let text = files::text(
+        &ratings,
+        MAX_ANSWERS,
+        "`study read` writes `ratings.csv`; a table of ratings can also be named itself",
+    )?;
+    let people = answers.join("participants.csv");
+    let people = if is_folder && people.exists() {
+        Some((files::text(&people, MAX_ANSWERS, "the people of `study read`")?, name(&people)))
+    } else {
+        None
+    };
+    let people = people.as_ref().map(|(text, file)| (text.as_str(), file.as_str()));
+    ratings_of_csv(&text, people, &name(&ratings), design).map_err(|why| bad(&why))
+}
+
 /// Does `study analyze`.
 pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint> {
     let design = design(&options.design)?;
@@ -341,21 +376,7 @@ pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint
     };
     // Before an answer is opened.
     files::write(&out.join("preregistration.md"), words::preregistration(&design).as_bytes())?;
-    let is_folder = options.answers.is_dir();
-    let ratings = if is_folder { options.answers.join("ratings.csv") } else { options.answers.clone() };
-    let text = files::text(
-        &ratings,
-        MAX_ANSWERS,
-        "`study read` writes `ratings.csv`; a table of ratings can also be named itself",
-    )?;
-    let people = options.answers.join("participants.csv");
-    let people = if is_folder && people.exists() {
-        Some((files::text(&people, MAX_ANSWERS, "the people of `study read`")?, name(&people)))
-    } else {
-        None
-    };
-    let people = people.as_ref().map(|(text, file)| (text.as_str(), file.as_str()));
-    let ratings = ratings_of_csv(&text, people, &name(&ratings), &design).map_err(|why| bad(&why))?;
+    let ratings = rated(&options.answers, &design)?;
     let results = analyzed(&ratings, &design, declared);
     let broken = |person: &str| results.excluded.get(person).cloned().unwrap_or_default();
     let whole = serde_json::to_string_pretty(&results).map_err(|why| {

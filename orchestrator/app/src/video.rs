@@ -6,8 +6,8 @@ use std::process::{Child, Command, Stdio};
 
 use serde_json::json;
 use socrates_draw::gif::{Gif, Histogram};
-use socrates_draw::{Film, FilmOptions, Shown};
-use socrates_model::{Digest, Recording, Run};
+use socrates_draw::{Film, FilmOptions, Seen, Shown};
+use socrates_model::{Digest, HumanId, Recording, Run};
 
 use crate::bundle::{self, Bundle, RunEntry};
 use crate::config::Config;
@@ -45,11 +45,13 @@ pub struct VideoOptions {
     pub speed: String,
     /// Width and height, px. Default: 1280x720, for a GIF 800x450.
     pub size: Option<String>,
+    /// The person whose eyes it is seen with; none from above.
+    pub from: Option<HumanId>,
 }
 
 /// What is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub(crate) enum Kind {
     Mp4,
     Webm,
     Gif,
@@ -107,6 +109,12 @@ pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> R
             "install it (Debian: apt-get install ffmpeg), or name a .gif or .svg file, which need nothing",
         ));
     }
+    if let Some(who) = options.from.filter(|_| kind == Kind::Svg) {
+        return Err(Complaint::input(
+            format!("`{}` cannot show what {who} sees: an animated SVG only moves shapes", out.display()),
+            "name a .gif file, or with ffmpeg an .mp4 or .webm file",
+        ));
+    }
     let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
     let shown: Vec<Shown<'_>> = runs
         .iter()
@@ -122,40 +130,47 @@ pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> R
         fps: if kind == Kind::Gif { 10 } else { 30 },
         labels: options.labels != Labels::Off,
         speed: speed(&options.speed)?,
-    };
-    let wrong = |why: socrates_draw::FilmError| {
-        let cause = std::error::Error::source(&why).map(ToString::to_string);
-        let mut complaint = Complaint::input(why.to_string(), "`socrates video --help` names what is allowed");
-        complaint.causes.extend(cause);
-        complaint
+        seen: options.from.map_or(Seen::Above, Seen::By),
+        ..FilmOptions::USUAL
     };
     let film = Film::new(&bundle.location, &bundle.proposal.title, &all, &shown, film_options).map_err(wrong)?;
     let count = film.times.pictures();
     let shown_so_far = std::cell::RefCell::new(Progress::new(*talk, "filming", count));
     let progress = |index: usize| shown_so_far.borrow_mut().at(index, "");
     match (kind, ffmpeg) {
-        (Kind::Mp4 | Kind::Webm, Some(program)) => {
-            by_ffmpeg(&program, &film, film_options, kind, &out, &progress, &wrong)?;
-        }
+        (Kind::Mp4 | Kind::Webm, Some(program)) => by_ffmpeg(&program, &film, film_options, kind, &out, &progress)?,
         (Kind::Svg, _) => crate::files::write(&out, film.animated_svg().as_bytes())?,
-        (Kind::Gif | Kind::Mp4 | Kind::Webm, _) => {
-            crate::files::write(&out, &gif(&film, film_options, &progress, &wrong)?)?;
-        }
+        (Kind::Gif | Kind::Mp4 | Kind::Webm, _) => crate::files::write(&out, &gif(&film, film_options, &progress)?)?,
     }
     drop(shown_so_far);
     let times = film.times;
     let part = format!("{:.1} s to {:.1} s at {}×", times.from_s, times.to_s, round(times.speed));
     talk.line(&format!("wrote      {} · {:.1} s · {part}", out.display(), times.length_s()));
-    let alt = format!(
-        "Seen from above: {}. {}",
-        socrates_offline::summary(&bundle.reading),
-        bundle.proposal.description.trim()
-    );
+    let from = options.from.map_or_else(|| "from above".to_owned(), |who| format!("by {who}"));
+    let alt =
+        format!("Seen {from}: {}. {}", socrates_offline::summary(&bundle.reading), bundle.proposal.description.trim());
     Ok(json!({
         "video": out.display().to_string(), "runs": names, "seconds": round(times.length_s()), "from_s": round(times.from_s),
         "to_s": round(times.to_s), "speed": round(times.speed), "pictures": count, "fps": times.fps, "alt": alt,
         "digest": std::fs::read(&out).ok().map(|bytes| Digest::of(&bytes)),
     }))
+}
+
+/// Why there is no film.
+pub(crate) fn wrong(why: socrates_draw::FilmError) -> Complaint {
+    let hint = match &why {
+        socrates_draw::FilmError::Absent { .. } => "name somebody who is there all the time, or leave the person out",
+        socrates_draw::FilmError::Empty
+        | socrates_draw::FilmError::Crowded { .. }
+        | socrates_draw::FilmError::Speed { .. }
+        | socrates_draw::FilmError::Size { .. }
+        | socrates_draw::FilmError::Part { .. }
+        | socrates_draw::FilmError::Picture(_) => "`socrates video --help` names what is allowed",
+    };
+    let cause = std::error::Error::source(&why).map(ToString::to_string);
+    let mut complaint = Complaint::input(why.to_string(), hint);
+    complaint.causes.extend(cause);
+    complaint
 }
 
 /// The runs that are shown; each must be in the bundle.
@@ -200,14 +215,13 @@ fn size(text: Option<&str>, kind: Kind) -> Result<(u32, u32), Complaint> {
 }
 
 /// Hands every picture to ffmpeg as it is drawn.
-fn by_ffmpeg(
+pub(crate) fn by_ffmpeg(
     program: &Path,
     film: &Film<'_>,
     options: FilmOptions,
     kind: Kind,
     out: &Path,
     progress: &dyn Fn(usize),
-    wrong: &dyn Fn(socrates_draw::FilmError) -> Complaint,
 ) -> Result<(), Complaint> {
     if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|why| {
@@ -257,12 +271,7 @@ fn by_ffmpeg(
 }
 
 /// The film as GIF.
-fn gif(
-    film: &Film<'_>,
-    options: FilmOptions,
-    progress: &dyn Fn(usize),
-    wrong: &dyn Fn(socrates_draw::FilmError) -> Complaint,
-) -> Result<Vec<u8>, Complaint> {
+fn gif(film: &Film<'_>, options: FilmOptions, progress: &dyn Fn(usize)) -> Result<Vec<u8>, Complaint> {
     let count = film.times.pictures();
     let mut histogram = Histogram::default();
     // A dozen pictures show every color there is.

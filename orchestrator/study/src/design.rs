@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 
 use crate::instrument::{self, Instrument, Item, Scale, Written};
+use crate::kit::setup::{Source, Survey};
 use crate::problem::Problem;
 use crate::rating::Film;
 
@@ -42,6 +43,12 @@ pub struct Design {
     pub margin: Option<f64>,
     /// Resamples of the bootstrap. Default 10 000.
     pub resamples: usize,
+    /// Films that a person rates at most, where everybody sees all scenarios.
+    pub films_per_person: Option<usize>,
+    /// What participants read.
+    pub survey: Survey,
+    /// Where films come from.
+    pub sources: Vec<Source>,
     /// BLAKE3 of the file's text.
     pub digest: String,
 }
@@ -125,6 +132,11 @@ struct File {
     margin: Option<f64>,
     #[serde(default = "many")]
     resamples: usize,
+    films_per_person: Option<usize>,
+    #[serde(default)]
+    survey: Survey,
+    #[serde(default)]
+    scenario: Vec<Source>,
 }
 
 const fn one() -> u64 {
@@ -180,8 +192,12 @@ impl Design {
             alpha: written.alpha,
             margin: written.margin,
             resamples: written.resamples,
+            films_per_person: written.films_per_person,
+            survey: written.survey,
+            sources: written.scenario,
             digest,
         };
+        check_sources(&design, &bad)?;
         let known: Vec<String> = design.dimensions().iter().map(Dimension::id).collect();
         for hypothesis in &design.hypotheses {
             if !known.contains(&hypothesis.dimension) {
@@ -307,6 +323,33 @@ fn check_films(written: &File, bad: &Bad<'_>) -> Result<Vec<String>, Problem> {
     }
     check_lengths(written, &scenarios, bad)?;
     Ok(scenarios)
+}
+
+/// What is said of where films come from must be about films that there are.
+fn check_sources(design: &Design, bad: &Bad<'_>) -> Result<(), Problem> {
+    let mut seen = BTreeSet::new();
+    for source in &design.sources {
+        if !design.scenarios.contains(&source.name) {
+            let hint = format!("scenarios of films are {}", design.scenarios.join(", "));
+            return Err(bad("scenario.name", &source.name, "no film shows it", &hint));
+        }
+        if !seen.insert(&source.name) {
+            return Err(bad("scenario.name", &source.name, "it stands twice", "one `[[scenario]]` for each"));
+        }
+        if source.bundles.is_empty() {
+            return Err(bad("scenario.bundles", &source.name, "no bundle is named", "name folders of its runs"));
+        }
+        if !(5.0..=600.0).contains(&source.longest_s) {
+            let hint = "45 s is the default; longer films tire";
+            return Err(bad("scenario.longest_s", &source.longest_s.to_string(), "not within 5 and 600 s", hint));
+        }
+    }
+    let least = design.planners.len();
+    if let Some(count) = design.films_per_person.filter(|count| *count < least) {
+        let what = format!("a person compares {least} planners, each in a film");
+        return Err(bad("films_per_person", &count.to_string(), &what, &format!("at least {least}")));
+    }
+    Ok(())
 }
 
 /// A longer film tells which planner hesitated: films of one scenario have one length.

@@ -3,7 +3,9 @@
 //! ```text
 //! study.toml ─► Design ─► preregistration                    simulate ─► answers, to try it
 //! files of answers ─► read ─► Table (one row per rating) ─► exclude ─► analyze ─► report page, methods, scripts
+//! study.toml ─► kit ─► survey page, files of other survey programs, the book of answers
 //! instruments (data) ─► score ─┘                              plan ─► power, orders, time, pay
+//!                                  └─► correlate ◄─ metrics of the runs that films show
 //! stats: reliability, agreement, ranks, mixed ordinal model, paired comparison, bootstrap; numbers in, numbers out
 //! ```
 //!
@@ -13,9 +15,11 @@
 
 pub mod analyze;
 pub mod cell;
+pub mod correlate;
 pub mod design;
 pub mod exclude;
 pub mod instrument;
+pub mod kit;
 pub mod page;
 pub mod plan;
 mod problem;

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::design::{Design, williams};
 use crate::instrument::Instrument;
+use crate::kit::limesurvey::{PERSON, code};
 use crate::rating::Film;
 
 /// What is true of the people who are simulated.
@@ -272,6 +273,90 @@ impl Simulated {
                 let line = ["survey-likert", &person.id, &seen.film, &rt, &watched, "", &response];
                 lines.push(line.map(str::to_owned).to_vec());
             }
+        }
+        text(&lines)
+    }
+
+    /// As LimeSurvey exports it with codes, with an address that reading has to drop.
+    #[must_use]
+    pub fn limesurvey(&self, design: &Design) -> String {
+        let mut head: Vec<String> =
+            ["id", "submitdate", "ipaddr", PERSON, "order", "interviewtime"].map(str::to_owned).to_vec();
+        head.extend(design.checks.keys().map(|name| code(name)));
+        for film in &design.films {
+            let film = code(&film.id);
+            for dimension in design.dimensions() {
+                let name = code(&dimension.instrument.id);
+                head.extend(dimension.scale.items.iter().map(|item| format!("{film}{name}[{}]", item.code)));
+            }
+            head.extend(["time", "watched", "position"].map(|what| format!("{film}{what}")));
+        }
+        let mut lines = vec![head];
+        for (number, person) in self.people.iter().enumerate() {
+            let mut line = vec![(number + 1).to_string(), "2024-01-01 00:00:00".to_owned(), "192.0.2.7".to_owned()];
+            line.extend([person.id.clone(), person.order.to_string(), person.duration_s.to_string()]);
+            line.extend(design.checks.keys().map(|name| person.checks.get(name).cloned().unwrap_or_default()));
+            for film in &design.films {
+                let seen = person.films.iter().find(|seen| seen.film == film.id);
+                let points = |code: &str| seen.and_then(|seen| seen.answers.get(code).copied().flatten());
+                line.extend(
+                    design.codes().map(|code| points(code).map_or_else(String::new, |points| points.to_string())),
+                );
+                let number = |of: &dyn Fn(&Seen) -> String| seen.map_or_else(String::new, of);
+                line.push(number(&|seen| seen.rt_s.to_string()));
+                line.push(number(&|seen| seen.watched_s.to_string()));
+                line.push(number(&|seen| seen.position.to_string()));
+            }
+            lines.push(line);
+        }
+        text(&lines)
+    }
+
+    /// As Qualtrics exports the survey of a kit, whose codebook tells its columns by ImportId: `column,role,film,item`.
+    #[must_use]
+    pub fn by_codebook(&self, design: &Design, codebook: &str) -> String {
+        let columns: Vec<Vec<&str>> = codebook.lines().skip(1).map(|line| line.split(',').collect()).collect();
+        let cell = |column: &[&str], at: usize| column.get(at).copied().unwrap_or_default().to_owned();
+        let mut head: Vec<String> =
+            ["IPAddress", "Duration (in seconds)", "PROLIFIC_PID", "order"].map(str::to_owned).to_vec();
+        let mut ids: Vec<String> = ["ipAddress", "duration", "PROLIFIC_PID", "order"].map(str::to_owned).to_vec();
+        for column in &columns {
+            head.push(format!("Q{}", head.len()));
+            ids.push(cell(column, 0));
+        }
+        for film in &design.films {
+            for what in ["watched", "position"] {
+                head.push(format!("{}_{what}", film.id));
+                ids.push(format!("{}_{what}", film.id));
+            }
+        }
+        let ids: Vec<String> = ids.iter().map(|id| json!({ "ImportId": id }).to_string()).collect();
+        let mut lines = vec![head.clone(), head, ids];
+        for person in &self.people {
+            let of = |film: &str| person.films.iter().find(|seen| seen.film == film);
+            let mut line: Vec<String> = vec![
+                "192.0.2.7".to_owned(),
+                person.duration_s.to_string(),
+                person.id.clone(),
+                person.order.to_string(),
+            ];
+            for column in &columns {
+                let (role, film, item) = (cell(column, 1), cell(column, 2), cell(column, 3));
+                line.push(match role.as_str() {
+                    "item" => {
+                        let points = of(&film).and_then(|seen| seen.answers.get(&item).copied().flatten());
+                        points.map_or_else(String::new, |points| points.to_string())
+                    }
+                    "time" => of(&film).map_or_else(String::new, |seen| seen.rt_s.to_string()),
+                    "check" => person.checks.get(&item).cloned().unwrap_or_default(),
+                    _other => String::new(),
+                });
+            }
+            for film in &design.films {
+                line.push(of(&film.id).map_or_else(String::new, |seen| seen.watched_s.to_string()));
+                line.push(of(&film.id).map_or_else(String::new, |seen| seen.position.to_string()));
+            }
+            lines.push(line);
         }
         text(&lines)
     }

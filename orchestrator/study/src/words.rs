@@ -3,6 +3,7 @@
 use crate::analyze::{Declared, Results};
 use crate::design::{Design, Dimension, williams};
 use crate::exclude;
+use crate::kit::setup::{EYE_M, FIELD_DEGREES, Source, View};
 
 /// What stands before the digest in a preregistration.
 const DIGEST: &str = "Digest of the study file (BLAKE3): ";
@@ -111,6 +112,34 @@ pub const fn standing(declared: Declared) -> &'static str {
     }
 }
 
+/// How films were made and what each view cannot show; nothing where the study does not say where its films come from.
+fn films(design: &Design) -> String {
+    if design.sources.is_empty() {
+        return String::new();
+    }
+    let (above, person): (Vec<&Source>, Vec<&Source>) =
+        design.sources.iter().partition(|source| source.view == View::Above);
+    let names = |of: &[&Source]| of.iter().map(|source| source.name.as_str()).collect::<Vec<_>>().join(", ");
+    let mut out = String::from(
+        "Films. Each film shows one simulated run, drawn from its recording at the speed at which it happened, without names, clock or captions. Films of a scenario show the same people with the same seeds, from the same place, begin at the same moment of the run and have the same length; where a run ends earlier, its last picture is held. They carried opaque names. ",
+    );
+    if !above.is_empty() {
+        out.push_str(&format!(
+            "Films of {} show the scene from above, with a camera that stands still: robot and people are a square and discs with arrows. Nobody in the scene sees it so: distances and speeds are easier to judge, a robot that comes near is less alarming, and height, sound and looks are absent; ratings of such films need not hold for people beside the robot. ",
+            names(&above)
+        ));
+    }
+    for source in person {
+        out.push_str(&format!(
+            "Films of {} show what {} sees: {} degrees wide, from a height of {} m, in the direction in which that person is turned. Robot, people and walls are simple shapes sized by distance. Who is beside or behind that person is not seen until they come into the field of view; looks, turns of the head, sound and the robot's real body are absent, and it is the view of one of the people. ",
+            source.name, source.view, FIELD_DEGREES, EYE_M
+        ));
+    }
+    out.truncate(out.trim_end().len());
+    out.push_str("\n\n");
+    out
+}
+
 /// The methods paragraph.
 #[must_use]
 pub fn methods(results: &Results, design: &Design) -> String {
@@ -137,7 +166,7 @@ pub fn methods(results: &Results, design: &Design) -> String {
         "They gave {given} ratings; {missing} are missing and take part in no figure. Planned were {}\n\n",
         sample(design)
     ));
-    out.push_str(&format!("Design. {}\n\nMeasures. ", conditions(design)));
+    out.push_str(&format!("Design. {}\n\n{}Measures. ", conditions(design), films(design)));
     out.push_str(&design.dimensions().into_iter().map(measure).collect::<Vec<_>>().join(". "));
     out.push_str(&format!(".\n\nAnalysis. {} {}\n\n", tests(design), standing(results.declared)));
     out.push_str("Limits. Inference is to the films that were shown; where a planner has one film in a scenario, film and planner cannot be told apart. What is rated from a film need not be what people feel beside the robot.\n");

@@ -190,6 +190,7 @@ impl Verb {
             || matches!(self, Self::View(view::View { tied: true, .. }))
             || matches!(self, Self::Author(author) if author.is_tied())
             || matches!(self, Self::Map(map) if map.is_tied())
+            || matches!(self, Self::Study(study) if study.is_tied())
             || matches!(self, Self::Play(_))
     }
 
@@ -227,7 +228,7 @@ impl Verb {
             Self::Evaluate(verb) => verb.act(talk, config).await,
             Self::Experiment(verb) => verb.act(talk, config).await,
             Self::Library(verb) => verb.act(talk, config).await,
-            Self::Study(verb) => verb.act(talk),
+            Self::Study(verb) => verb.act(talk, config).await,
             Self::Scenarios(verb) => verb.act(talk).await,
             Self::Cluster(verb) => verb.act(talk, config).await,
             Self::Dev(verb) => verb.act(talk, config).await,

@@ -7,7 +7,7 @@ use socrates_app::config::Config;
 use socrates_app::figure::{self, FigureOptions};
 use socrates_app::output::Printer;
 use socrates_app::video::{self, VideoOptions};
-use socrates_model::Run;
+use socrates_model::{HumanId, Run};
 
 use super::{Outcome, done};
 
@@ -43,17 +43,20 @@ pub(crate) struct Video {
     /// Width and height, px. Default: 1280x720, for a GIF 800x450.
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     size: Option<String>,
+    /// Show what this person sees, such as `human_2`, instead of the view from above; not for .svg.
+    #[arg(long, value_name = "PERSON")]
+    from: Option<HumanId>,
 }
 
 impl Video {
     pub(super) fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        let Self { bundle, out, labels, run, speed, size } = self.clone();
+        let Self { bundle, out, labels, run, speed, size, from } = self.clone();
         let labels = match labels {
             Labels::On => video::Labels::On,
             Labels::Opaque => video::Labels::Opaque,
             Labels::Off => video::Labels::Off,
         };
-        done(video::video(talk, config, &VideoOptions { bundle, out, labels, run, speed, size }))
+        done(video::video(talk, config, &VideoOptions { bundle, out, labels, run, speed, size, from }))
     }
 }
 

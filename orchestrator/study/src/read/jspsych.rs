@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::sheet::Sheet;
 use super::{Gather, Pseudonyms, Spot, count_check};
 use crate::design::Design;
+use crate::kit::asks::is_right;
 use crate::problem::Problem;
 use crate::rating::{Rating, Ratings, Row};
 
@@ -52,8 +53,7 @@ pub fn jspsych(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Re
             // Counted from 0 like every answer of this plugin.
             let answers: Vec<f64> =
                 told.as_object().into_iter().flatten().filter_map(|(_, one)| one.as_f64()).collect();
-            let is_right =
-                right.parse::<f64>().is_ok_and(|right| answers.iter().all(|one| (one + 1.0 - right).abs() < 1e-9));
+            let is_right = answers.iter().all(|one| is_right(design, right, &(one + 1.0).to_string()));
             count_check(gather.person(id), is_right && !answers.is_empty());
             continue;
         }

@@ -1,6 +1,7 @@
 //! Files of answers, as survey programs write them, become one table of ratings.
 
 mod jspsych;
+mod limesurvey;
 mod own;
 mod prolific;
 mod qualtrics;
@@ -10,7 +11,8 @@ mod tables;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub use jspsych::jspsych;
-pub use own::own;
+pub use limesurvey::limesurvey;
+pub use own::{Line, own};
 pub use prolific::{Submission, prolific};
 pub use qualtrics::{Codebook, qualtrics};
 pub use tables::{participants_csv, ratings_csv, ratings_of_csv};
@@ -28,6 +30,8 @@ pub enum Format {
     JsPsych,
     /// The CSV of Qualtrics.
     Qualtrics,
+    /// The CSV of LimeSurvey.
+    LimeSurvey,
 }
 
 /// The format of a text.
@@ -43,13 +47,19 @@ pub fn format_of(text: &str, file: &str) -> Result<Format, Problem> {
     if head.split(',').any(|name| name.trim_matches('"') == "trial_type") {
         return Ok(Format::JsPsych);
     }
+    if head.split(',').any(|name| name.trim_matches('"') == crate::kit::limesurvey::PERSON) {
+        return Ok(Format::LimeSurvey);
+    }
     // Question texts of the second head line may hold line ends.
     if text.get(..text.floor_char_boundary(2_000_000)).is_some_and(|begin| begin.contains("ImportId")) {
         return Ok(Format::Qualtrics);
     }
-    let hint = "lines of JSON, the CSV of Qualtrics with its three head lines, and the CSV of jsPsych are read; a table of ratings goes to `study analyze` as it is";
+    let hint = "lines of JSON, the CSV of Qualtrics with its three head lines, and those of jsPsych and LimeSurvey are read; a table of ratings goes to `study analyze` as it is";
     Err(Problem::new(file, "no format of answers that is known", hint).line(1).value(head))
 }
+
+/// Begins an id that is a hash already.
+pub const HASHED: char = '~';
 
 /// Replaces the ids under which people came: a keyed hash, so that nobody without the key finds them again.
 #[derive(Debug, Clone, Copy)]
@@ -59,9 +69,14 @@ pub struct Pseudonyms {
 }
 
 impl Pseudonyms {
-    /// The name of a person in all tables: 12 hexadecimal digits.
+    /// The name of a person in all tables: 12 hexadecimal digits. An id that our own survey hashed when the person came keeps its name.
     #[must_use]
     pub fn of(&self, id: &str) -> String {
+        let hashed =
+            id.strip_prefix(HASHED).filter(|rest| rest.len() == 12 && rest.chars().all(|c| c.is_ascii_hexdigit()));
+        if let Some(name) = hashed {
+            return name.to_owned();
+        }
         blake3::keyed_hash(&self.key, id.trim().as_bytes()).to_hex().chars().take(12).collect()
     }
 }

@@ -2,32 +2,56 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{Gather, Pseudonyms, Spot, count_check};
 use crate::design::Design;
+use crate::kit::asks::is_right;
 use crate::problem::Problem;
 use crate::rating::{Rating, Ratings, Row};
 
-#[derive(Deserialize)]
+/// A line of the book of a survey.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
-enum Line {
+pub enum Line {
+    /// Somebody begins.
+    Begin {
+        /// Who, as an id or as its hash.
+        participant: String,
+        /// By this they come back.
+        token: String,
+        /// The order of films that they get.
+        order: String,
+    },
     /// What a person said about a film.
     Film {
+        /// Who.
         participant: String,
+        /// The film.
         film: String,
+        /// Its place in their order, from 1.
         position: Option<u32>,
+        /// How much of it was played, s.
         watched_s: Option<f64>,
+        /// Time to answer, s.
         rt_s: Option<f64>,
+        /// Answers by item: points, words, or null where nothing was said.
         answers: BTreeMap<String, Value>,
+        /// Answers to attention checks.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+        checks: BTreeMap<String, Value>,
     },
     /// What is known of a person as a whole.
     Person {
+        /// Who.
         participant: String,
+        /// The order of films that they saw.
         order: Option<String>,
+        /// Time from start to end, s.
         duration_s: Option<f64>,
-        #[serde(default)]
+        /// Answers to attention checks.
+        #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         checks: BTreeMap<String, Value>,
     },
 }
@@ -45,7 +69,9 @@ pub fn own(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Result
             Problem::new(file, why.to_string(), hint).line(number)
         })?;
         match parsed {
-            Line::Film { participant, film, position, watched_s, rt_s, answers } => {
+            Line::Begin { participant, order, .. } => gather.person(&participant).order = Some(order),
+            Line::Film { participant, film, position, watched_s, rt_s, answers, checks } => {
+                count(&mut gather, design, number, &participant, &checks)?;
                 let film = gather.film(&film, at(number, "film"))?;
                 for (code, value) in answers {
                     gather.item(&code, at(number, &code))?;
@@ -66,22 +92,34 @@ pub fn own(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Result
                     let what = format!("line {before} is about this person already");
                     return Err(gather.bad(at(number, "participant"), &participant, what, "keep one of both lines"));
                 }
-                let mut results = Vec::new();
-                for (name, answer) in &checks {
-                    let Some(right) = design.checks.get(name) else {
-                        let hint = "name its right answer under `[checks]` of the study";
-                        return Err(gather.bad(at(number, "checks"), name, "the study declares no such check", hint));
-                    };
-                    let told = answer.as_str().map_or_else(|| answer.to_string(), str::to_owned);
-                    results.push(told.eq_ignore_ascii_case(right));
-                }
+                count(&mut gather, design, number, &participant, &checks)?;
                 let person = gather.person(&participant);
-                (person.order, person.duration_s) = (order, duration_s);
-                results.iter().for_each(|right| count_check(person, *right));
+                person.order = order.or_else(|| person.order.take());
+                person.duration_s = duration_s;
             }
         }
     }
     gather.done()
+}
+
+/// Counts answers to checks.
+fn count(
+    gather: &mut Gather<'_>,
+    design: &Design,
+    number: u64,
+    participant: &str,
+    checks: &BTreeMap<String, Value>,
+) -> Result<(), Problem> {
+    for (name, answer) in checks {
+        let Some(right) = design.checks.get(name) else {
+            let hint = "name its right answer under `[checks]` of the study";
+            return Err(gather.bad(at(number, "checks"), name, "the study declares no such check", hint));
+        };
+        let told = answer.as_str().map_or_else(|| answer.to_string(), str::to_owned);
+        let is_right = is_right(design, right, &told);
+        count_check(gather.person(participant), is_right);
+    }
+    Ok(())
 }
 
 const fn at(line: u64, column: &str) -> Spot<'_> {

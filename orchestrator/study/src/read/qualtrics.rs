@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::sheet::Sheet;
 use super::{Gather, Pseudonyms, Spot, count_check};
 use crate::design::Design;
+use crate::kit::asks::is_right;
 use crate::problem::Problem;
 use crate::rating::{Ratings, Row};
 
@@ -278,7 +279,8 @@ fn line(
                     let hint = "name its right answer under `[checks]` of the study";
                     return Err(gather.bad(spot(name), check, "the study declares no such check", hint));
                 };
-                count_check(gather.person(id), cell.eq_ignore_ascii_case(&right));
+                let is_right = is_right(gather.design, &right, cell);
+                count_check(gather.person(id), is_right);
             }
             // A film that this person was not shown leaves all its columns empty.
             Role::Item { film, .. } if !shown.contains(film.as_str()) => {}

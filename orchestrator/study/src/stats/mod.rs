@@ -27,7 +27,7 @@ pub use holm::holm;
 pub use mixed::{Balanced, balanced_mixed};
 pub use ordinal::{Ordinal, Term, ordinal};
 pub use paired::{BradleyTerry, Equivalence, bradley_terry, cliffs_delta, equivalence};
-pub use rank::{midranks, spearman};
+pub use rank::{kendall, midranks, spearman};
 pub use reliability::{Alpha, Icc, Iccs, cronbach, icc, omega};
 pub use wilcoxon::{Wilcoxon, Zeros, wilcoxon};
 

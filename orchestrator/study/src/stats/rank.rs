@@ -36,6 +36,28 @@ pub fn spearman(pairs: &[(f64, f64)]) -> Result<(f64, f64), NoValue> {
     Ok((rho, 2.0 * dist::t_upper(libm::fabs(t), df)))
 }
 
+/// Kendall's τ-b, corrected for ties on both sides (Kendall 1945).
+///
+/// # Errors
+/// Fewer than two pairs, or values that are all alike.
+pub fn kendall(pairs: &[(f64, f64)]) -> Result<f64, NoValue> {
+    if pairs.len() < 2 {
+        return Err(NoValue::TooFew { what: "pairs", found: pairs.len(), needed: 2 });
+    }
+    let sign = |a: f64, b: f64| if a.total_cmp(&b).is_eq() { 0.0 } else { (a - b).signum() };
+    let (mut both, mut first, mut second) = (0.0, 0.0, 0.0);
+    for (at, a) in pairs.iter().enumerate() {
+        for b in pairs.iter().skip(at + 1) {
+            let (x, y) = (sign(a.0, b.0), sign(a.1, b.1));
+            both += x * y;
+            first += x * x;
+            second += y * y;
+        }
+    }
+    let size = libm::sqrt(first * second);
+    if size > 0.0 { Ok(both / size) } else { Err(NoValue::Constant) }
+}
+
 /// Product-moment correlation; none where one side does not vary.
 pub(super) fn pearson(first: &[f64], second: &[f64]) -> Option<f64> {
     let n = float(first.len());

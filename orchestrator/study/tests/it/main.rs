@@ -2,6 +2,7 @@
 #![cfg(test)]
 
 mod formats;
+mod kits;
 mod planted;
 mod reports;
 
