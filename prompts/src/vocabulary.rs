@@ -34,10 +34,10 @@ pub(crate) fn proposal_tables() -> String {
     };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
-         `for`: so many seconds at most, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
+         `for`: so many seconds in all, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
          `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. Usual values: `within_m` (at most so far) 2.5, \
          `for_s` (at least so long; half of its rule's `for`) 3, `gap_s` (both there within so many seconds) 4, `by_m` (so much farther) 2, `spread_m` (of two members at \
-         most) 1.5, walking 3. One test is enough for a fact of several.\n\
+         most) 1.5, walking 3.\n\
          Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),

@@ -92,6 +92,8 @@ struct Made {
     bundle: PathBuf,
     recording: Digest,
     digest: Digest,
+    /// Of its pictures alone.
+    pictures: Digest,
 }
 
 /// A kit on its way to the disk.
@@ -160,6 +162,7 @@ pub fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<
         made.push(filmed(&design, &scenes, film, &mut kit, ffmpeg.as_deref())?);
     }
     drop(progress);
+    alike(&made).iter().for_each(|told| talk.warn(told));
     kit.text(&format!("{SURVEY}/index.html"), &survey)?;
     kit.text("consent.md", &format!("{}\n", design.survey.consent.text()))?;
     kit.text("codebook.csv", &codebook(&design))?;
@@ -180,6 +183,24 @@ pub fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<
     files::write(&secret, manifest(&made).as_bytes())?;
     tell(talk, options, &design, (&scenes, ffmpeg.is_some()), &secret);
     Ok(())
+}
+
+/// Films of one scenario that show the same: people would rate one film twice, as two planners.
+fn alike(made: &[Made]) -> Vec<String> {
+    let pairs = made.iter().enumerate().flat_map(|(at, one)| {
+        let later = made.get(at + 1..).unwrap_or_default().iter();
+        later
+            .filter(|other| other.pictures == one.pictures && other.film.scenario == one.film.scenario)
+            .map(move |other| (one, other))
+    });
+    pairs
+        .map(|(one, other)| {
+            format!(
+                "the films `{}` and `{}` of `{}` show the same: `{}` and `{}` did the same with seed {}; take another seed or leave one out",
+                one.film.id, other.film.id, one.film.scenario, one.film.planner, other.film.planner, one.film.seed
+            )
+        })
+        .collect()
 }
 
 fn read(design: &Design, file: &Path) -> Result<BTreeMap<String, Scene>, Complaint> {
@@ -244,6 +265,7 @@ fn filmed(
         pictures: &strip.pictures,
     };
     let digest = kit.text(&format!("{SURVEY}/{FILMS}/{}.js", film.id), &page::film_script(&film.id, &picture))?;
+    let pictures = Digest::of(page::film_script("", &picture).as_bytes());
     if let Some(program) = ffmpeg {
         let path = format!("{CLIPS}/{}.mp4", film.id);
         by_ffmpeg(program, &drawn, film_options, Kind::Mp4, &kit.root.join(&path), &|_| {})?;
@@ -251,7 +273,7 @@ fn filmed(
         kit.files.insert(path, Digest::of(&bytes));
     }
     let film = Declared { length_s: Some(strip.length_s), ..film.clone() };
-    Ok(Made { film, view: source.view.to_string(), bundle: dir.clone(), recording: recording.hash(), digest })
+    Ok(Made { film, view: source.view.to_string(), bundle: dir.clone(), recording: recording.hash(), digest, pictures })
 }
 
 /// Which film shows what, from the bundle to the film.

@@ -12,6 +12,7 @@ use super::{bad, name};
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
+use crate::words::plural;
 
 /// Letters and digits of names of films; no vowels, so that no word comes about.
 const LETTERS: &[u8] = b"bcdfghjkmnpqrstvwxz";
@@ -65,10 +66,10 @@ pub fn new(talk: &Printer, options: &NewOptions) -> Result<(), Complaint> {
     files::write(&options.out, text.as_bytes())?;
     let films = scenes.len() * planners.len() * seeds.len();
     talk.line(&format!(
-        "films      {films}: {} scenarios, {} planners, {} seeds",
-        scenes.len(),
-        planners.len(),
-        seeds.len()
+        "films      {films}: {}, {}, {}",
+        plural(scenes.len(), "scenario"),
+        plural(planners.len(), "planner"),
+        plural(seeds.len(), "seed")
     ));
     talk.line(&format!("wrote      {}", options.out.display()));
     talk.line("next       fill the slots of `consent`, look at `context`, state your hypotheses; then `socrates study preregister` and `socrates study build`");

@@ -196,7 +196,7 @@ impl Scene {
             let text = text.trim();
             if text.is_empty() || text.ends_with(['.', '!', '?']) { text.to_owned() } else { format!("{text}.") }
         };
-        let task = format!("The task of the robot: {}", sentence(&request.task));
+        let task = format!("The robot's task: {}", sentence(&request.task));
         [sentence(&request.social_context), task]
             .iter()
             .filter(|part| !part.is_empty())
