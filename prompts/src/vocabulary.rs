@@ -24,7 +24,8 @@ pub(crate) fn proposal_tables() -> String {
             if test.shown == Shown::ByName || test.meaning.trim_start_matches("the ").starts_with(&said) {
                 line + "\n"
             } else {
-                format!("{line}: {}\n", test.meaning)
+                let note = test.note.map_or_else(String::new, |note| format!("; {note}"));
+                format!("{line}: {}{note}\n", test.meaning)
             }
         };
         let (rare, usual): (Vec<Test>, Vec<Test>) = rows.into_iter().partition(|test| test.shown == Shown::Rarely);
@@ -104,8 +105,6 @@ pub(crate) fn test_in_words(test: &Value) -> Option<String> {
     };
     let wanted = name(test)?;
     let meaning = predicates().into_iter().find(|row| name(&row.form).as_ref() == Some(&wanted))?.meaning;
-    // What is behind the semicolon is for authors.
-    let meaning = meaning.split(';').next().unwrap_or(meaning);
     let line = terse::line(test);
     let values = line.split_once(' ').map_or_else(String::new, |(_, values)| format!(" ({values})"));
     Some(format!("{meaning}{values}"))
@@ -212,6 +211,8 @@ fn row<T: Serialize>(value: &T, meaning: &str) -> (Value, String) {
 struct Test {
     form: Value,
     meaning: &'static str,
+    /// What authors are told besides.
+    note: Option<&'static str>,
     role: ClauseRole,
     shown: Shown,
 }
@@ -232,17 +233,21 @@ impl Test {
         Self { shown: Shown::ByName, ..self }
     }
 
+    fn noted(self, note: &'static str) -> Self {
+        Self { note: Some(note), ..self }
+    }
+
     fn rarely(self) -> Self {
         Self { shown: Shown::Rarely, ..self }
     }
 }
 
 fn setup(test: &Predicate, meaning: &'static str) -> Test {
-    Test { form: json!(test), meaning, role: ClauseRole::Setup, shown: Shown::InFull }
+    Test { form: json!(test), meaning, note: None, role: ClauseRole::Setup, shown: Shown::InFull }
 }
 
 fn outcome(test: &Predicate, meaning: &'static str) -> Test {
-    Test { form: json!(test), meaning, role: ClauseRole::Outcome, shown: Shown::InFull }
+    Test { form: json!(test), meaning, note: None, role: ClauseRole::Outcome, shown: Shown::InFull }
 }
 
 fn other() -> HumanId {
@@ -371,14 +376,13 @@ fn predicates() -> Vec<Test> {
         setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together").by_name(),
         setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together").by_name(),
         setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line").by_name(),
-        setup(
-            &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
-            "one test before another; c1 leads `setup`",
-        ),
+        setup(&Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() }, "one test before another")
+            .noted("c1 leads `setup`"),
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: true },
-            "is first where they meet; crosses in front, or `at_door`: through the door",
-        ),
+            "is first where they meet",
+        )
+        .noted("crosses in front, or `at_door`: through the door"),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place",

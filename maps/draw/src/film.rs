@@ -18,7 +18,7 @@ use crate::svg::Svg;
 pub const PANELS: usize = 4;
 /// Seconds of the film for which a caption stands, and of the run where the film is slower.
 const CAPTION_SECS: f64 = 2.0;
-/// So many are told at once.
+/// Lines that are told at once.
 const CAPTIONS: usize = 3;
 /// Least radius of an agent in films that are to be alike, px: so far away that it could not be seen at its own size.
 const LEAST_ALIKE_PX: f64 = 5.0;
@@ -110,13 +110,13 @@ pub enum FilmError {
         "`{who}` is not in the run `{run}` at {at_s:.1} s, so nothing can be shown as they see it; people of the run: {people}"
     )]
     Absent {
-        /// Who.
+        /// The person.
         who: HumanId,
         /// The run.
         run: String,
         /// When, s of the run.
         at_s: f64,
-        /// Who is there.
+        /// Those who are there.
         people: String,
     },
     /// A picture could not be drawn.
@@ -271,7 +271,7 @@ impl<'a> Film<'a> {
             } else {
                 Camera::of(location, all, recording, part, (view, safe))
             };
-            // Who is drawn larger than they are seems to touch others.
+            // Somebody drawn larger than they are seems to touch others.
             let least = if options.alike { LEAST_ALIKE_PX } else { least_px(view.h) / 2.0 };
             let look =
                 Look::new(recording, (camera.px_per_m(location), least), text_px(h / rows), options.labels, safe);
@@ -421,7 +421,7 @@ fn captions(recording: &Recording) -> Vec<(f64, String)> {
         ) else {
             continue;
         };
-        // Who walks, or stands there from the start, is seen, not told: it would be a line of names. Reactions are told.
+        // Somebody who walks, or stands there from the start, is seen, not told: it would be a line of names. Reactions are told.
         if kind == "leaf" && (words.ends_with(&walks) || t < FIRST_SECS && words.ends_with(&stands)) {
             continue;
         }

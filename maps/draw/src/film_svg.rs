@@ -349,7 +349,7 @@ mod tests {
         assert!(!film(false).contains("reference") && !film(false).contains(">h3<"));
         assert!(!svg.replace("http://www.w3.org/2000/svg", "").contains("://") && !svg.contains("<script"));
         assert_eq!(svg, film(true));
-        // Who comes later is hidden until then.
+        // Somebody who comes later is hidden until then.
         let late = crate::fixture::away(walk(3), 2, 0..300);
         let options = FilmOptions { size: (640, 360), labels: true, ..FilmOptions::USUAL };
         let shown = [Shown { recording: &late, report: None, name: None }];

@@ -238,10 +238,7 @@ impl Simulated {
                     let told = |points: f64| anchor(points).filter(|_| words).unwrap_or_else(|| points.to_string());
                     line.push(points.map_or_else(String::new, told));
                 }
-                let number = |of: &dyn Fn(&Seen) -> String| seen.map_or_else(String::new, of);
-                line.push(number(&|seen| seen.rt_s.to_string()));
-                line.push(number(&|seen| seen.watched_s.to_string()));
-                line.push(number(&|seen| seen.position.to_string()));
+                line.extend(times(seen));
             }
             lines.push(line);
         }
@@ -302,10 +299,7 @@ impl Simulated {
                 line.extend(
                     design.codes().map(|code| points(code).map_or_else(String::new, |points| points.to_string())),
                 );
-                let number = |of: &dyn Fn(&Seen) -> String| seen.map_or_else(String::new, of);
-                line.push(number(&|seen| seen.rt_s.to_string()));
-                line.push(number(&|seen| seen.watched_s.to_string()));
-                line.push(number(&|seen| seen.position.to_string()));
+                line.extend(times(seen));
             }
             lines.push(line);
         }
@@ -374,6 +368,13 @@ impl Simulated {
         }
         text(&lines)
     }
+}
+
+/// Cells of what was measured while a film was seen, and of its place; empty where it was not.
+fn times(seen: Option<&Seen>) -> [String; 3] {
+    seen.map_or_else(Default::default, |seen| {
+        [seen.rt_s.to_string(), seen.watched_s.to_string(), seen.position.to_string()]
+    })
 }
 
 /// Lines as CSV.

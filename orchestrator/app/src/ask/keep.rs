@@ -61,13 +61,12 @@ fn merged(base: &Proposal, mine: &Proposal, came: &Proposal, shown: Shown) -> (P
             changed.push(place);
         }
     }
-    // Who joined, where the new proposal has not let them join by itself.
+    // Those who joined, where the new proposal has not let them join by itself.
     for (place, own) in mine.humans.iter().enumerate().skip(base.humans.len().max(new.humans.len())) {
         new.humans.push(own.clone());
         changed.push(place);
     }
-    let answered = shown == Shown::Changes && new.groups != base.groups;
-    if mine.groups != base.groups && !answered && mine.humans.len() == new.humans.len() {
+    if stands(shown, &new.groups, &base.groups, &mine.groups) && mine.humans.len() == new.humans.len() {
         new.groups.clone_from(&mine.groups);
         for (own, now) in mine.humans.iter().zip(&mut new.humans) {
             now.group = own.group;
@@ -86,10 +85,14 @@ fn before<'a>(base: &'a Proposal, mine: &Proposal, place: usize) -> Option<&'a H
     base.humans.iter().skip(place).find(|old| old.role == own.role && old.relation == own.relation)
 }
 
-/// Takes what the person changed, unless an author that saw it says something new.
+/// Takes what the person changed, where it stands.
 fn take<T: PartialEq + Clone>(shown: Shown, new: &mut T, base: &T, mine: &T) {
-    let answered = shown == Shown::Changes && new != base;
-    if mine != base && !answered {
+    if stands(shown, new, base, mine) {
         new.clone_from(mine);
     }
+}
+
+/// Whether what the person changed stands: an author that saw it has the last word where it says something new.
+fn stands<T: PartialEq>(shown: Shown, new: &T, base: &T, mine: &T) -> bool {
+    mine != base && (shown == Shown::Nothing || new == base)
 }

@@ -265,7 +265,8 @@ fn filmed(
         pictures: &strip.pictures,
     };
     let digest = kit.text(&format!("{SURVEY}/{FILMS}/{}.js", film.id), &page::film_script(&film.id, &picture))?;
-    let pictures = Digest::of(page::film_script("", &picture).as_bytes());
+    // The ground is that of the scenario.
+    let pictures = Digest::of(strip.pictures.join("\n").as_bytes());
     if let Some(program) = ffmpeg {
         let path = format!("{CLIPS}/{}.mp4", film.id);
         by_ffmpeg(program, &drawn, film_options, Kind::Mp4, &kit.root.join(&path), &|_| {})?;

@@ -298,7 +298,7 @@ async fn begin(State(shared): State<Arc<Shared>>, bytes: Result<Bytes, BytesReje
     };
     blocking(move || {
         let mut book = shared.book.lock().unwrap_or_else(PoisonError::into_inner);
-        // Who comes back with their token goes on, whatever they typed.
+        // Somebody who comes back with their token goes on, whatever they typed.
         let known = begin.token.and_then(|token| book.journal.of_token(&token).ok()).map(|at| at.participant);
         let who = known.unwrap_or_else(|| format!("{HASHED}{}", shared.names.of(&id)));
         let gone = book.gone(shared.patience);

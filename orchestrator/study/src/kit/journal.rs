@@ -82,7 +82,7 @@ pub enum Refusal {
 /// Where a person stands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
-    /// Who.
+    /// The participant.
     pub participant: String,
     /// By this they come back.
     pub token: String,
@@ -205,7 +205,7 @@ impl Journal {
         })
     }
 
-    /// Who has a token.
+    /// The participant of a token.
     ///
     /// # Errors
     /// [`Refusal::Unknown`].

@@ -261,7 +261,7 @@ fn entry(design: &Design, id: &str) -> Value {
         "LastActivated": "0000-00-00 00:00:00", "Deleted": null })
 }
 
-/// Who comes, consent, one of the orders, and the way back.
+/// The participant, consent, one of the orders, and the way back.
 fn flow(design: &Design, first: &str, all: &[Order], films: &[(String, String)], checks: &[(Check, String)]) -> Value {
     let mut count = 1;
     let mut next = || {

@@ -17,7 +17,7 @@ use crate::rating::{Rating, Ratings, Row};
 pub enum Line {
     /// Somebody begins.
     Begin {
-        /// Who, as an id or as its hash.
+        /// The participant, as an id or as its hash.
         participant: String,
         /// By this they come back.
         token: String,
@@ -26,7 +26,7 @@ pub enum Line {
     },
     /// What a person said about a film.
     Film {
-        /// Who.
+        /// The participant.
         participant: String,
         /// The film.
         film: String,
@@ -44,7 +44,7 @@ pub enum Line {
     },
     /// What is known of a person as a whole.
     Person {
-        /// Who.
+        /// The participant.
         participant: String,
         /// The order of films that they saw.
         order: Option<String>,
