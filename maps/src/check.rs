@@ -13,6 +13,8 @@ use crate::read::{EXTRA, GRAPH, edge_at};
 const DOOR_MAX_M: f64 = 8.0;
 /// How far a door's end may be from the wall that holds it, m.
 const DOOR_SLACK_M: f64 = 0.35;
+/// Places between a door's end and there at which the wall is looked for.
+const DOOR_STEPS: u32 = 14;
 /// Largest time, s, or distance, m, that a door may be given; a run lasts at most as long.
 const DOOR_VALUE_MAX: f64 = 600.0;
 
@@ -293,8 +295,10 @@ fn line_problems(location: &Location, door: &Door, fault: &mut impl FnMut(FaultC
         return;
     }
     let along = (door.to - door.from).normalize();
+    // Behind a thin wall that the door's line meets lies the floor of somebody else.
+    let steps = (1..=DOOR_STEPS).map(|step| DOOR_SLACK_M * f64::from(step) / f64::from(DOOR_STEPS));
     for (end, outward) in [(door.from, -along), (door.to, along)] {
-        if location.grid.is_free(&(end + outward * DOOR_SLACK_M)) {
+        if steps.clone().all(|off_m| location.grid.is_free(&(end + outward * off_m))) {
             let message = format!(
                 "its end ({:.2}, {:.2}) m does not meet a wall within {DOOR_SLACK_M} m; the gap beside the door would stay open",
                 end.x, end.y
@@ -308,7 +312,7 @@ fn line_problems(location: &Location, door: &Door, fault: &mut impl FnMut(FaultC
 mod tests {
     use super::*;
     use crate::field::tests::grid;
-    use socrates_model::{DoorKind, GraphEdge, GraphNode, SceneGraph};
+    use socrates_model::{DoorKind, GraphEdge, GraphNode, Grid, SceneGraph};
 
     fn id(text: &str) -> NodeId {
         NodeId::new(text).unwrap()
@@ -387,5 +391,35 @@ mod tests {
         open.doors[0].to = Point::new(1.5, 1.25);
         open.doors[0].inside.clear();
         assert_eq!(codes(&open), ["M-WALL", "M-WALL"]);
+    }
+
+    #[test]
+    fn a_door_may_end_at_a_thin_wall_with_a_room_behind_it() {
+        let mut thin = location();
+        // Walls of one cell of 0.1 m; the opening on the left ends at the wall that parts the two rooms on the right of it.
+        let rows = [
+            "####################",
+            "#........#.........#",
+            "#........#.........#",
+            "#........#.........#",
+            "#........#.........#",
+            "####.....#.........#",
+            "#........#.........#",
+            "#........#.........#",
+            "#..................#",
+            "#........#.........#",
+            "####################",
+        ];
+        thin.grid = Grid { resolution_m: 0.1, ..grid(&rows) };
+        thin.graph = thin.graph.edited(|nodes, edges| {
+            nodes[0].at = Point::new(0.65, 0.85);
+            nodes[1].at = Point::new(0.65, 0.25);
+            edges.truncate(1);
+        });
+        (thin.doors[0].from, thin.doors[0].to) = (Point::new(0.4, 0.55), Point::new(0.9, 0.55));
+        assert_eq!(check(&thin), []);
+        // With a gap in that wall right there the line ends nowhere.
+        thin.grid.cells[5 * 20 + 9] = socrates_model::Cell::Free;
+        assert_eq!(codes(&thin), ["M-WALL"]);
     }
 }

@@ -30,6 +30,7 @@ pub mod schema;
 
 mod behaviors;
 mod feedback;
+mod hints;
 mod order;
 mod passing;
 mod place_text;

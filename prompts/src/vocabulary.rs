@@ -11,34 +11,19 @@ use socrates_model::{
     Action, AgentId, ClauseRole, Gesture, GroupId, HumanId, PlaceClass, Predicate, Proposal, RobotRule, Trigger,
 };
 
-use crate::terse;
+use crate::{hints, terse};
 
 /// Everything a proposal may say, in its short form.
 pub(crate) fn proposal_tables() -> String {
-    let (setup, outcome): (Vec<_>, Vec<_>) = predicates().into_iter().partition(|test| test.role == ClauseRole::Setup);
-    let tests = |rows: Vec<Test>| -> String {
-        let told = |test: &Test| {
-            let line = signature(&test.form);
-            let said = line.split(' ').next().unwrap_or_default().replace('_', " ");
-            // Some names say it all.
-            if test.shown == Shown::ByName || test.meaning.trim_start_matches("the ").starts_with(&said) {
-                line + "\n"
-            } else {
-                let note = test.note.map_or_else(String::new, |note| format!("; {note}"));
-                format!("{line}: {}{note}\n", test.meaning)
-            }
-        };
-        let (rare, usual): (Vec<Test>, Vec<Test>) = rows.into_iter().partition(|test| test.shown == Shown::Rarely);
-        let each: String = usual.iter().map(told).collect();
-        let rare: Vec<String> = rare.iter().map(|test| signature(&test.form)).collect();
-        if rare.is_empty() { each } else { format!("{each}Rarely: {}\n", rare.join(", ")) }
-    };
+    let usual = predicates().into_iter().filter(|test| !matches!(test.shown, Shown::Called(_)));
+    let (setup, outcome): (Vec<_>, Vec<_>) = usual.partition(|test| test.role == ClauseRole::Setup);
+    let tests = |rows: Vec<Test>| -> String { rows.iter().map(Test::told).collect() };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
          `for`: so many seconds in all, while the triggers hold; `latched`: also when they no longer do. A line of the script: `blocked:3 -> say:EXCUSE_ME`. A test: \
          `meets human=human_1 within_m=2.5 source=f1`, pairs as `gap_m=0.5..3.5`. Usual values: `within_m` (at most so far) 2.5, \
-         `for_s` (at least so long; half of its rule's `for`) 3, `gap_s` (both there within so many seconds) 4, `by_m` (so much farther) 2, `spread_m` (of two members at \
-         most) 1.5, walking 3.\n\
+         `for_s` (at least so long; half of its rule's `for`) 3, `gap_s` (both there within so many seconds) 4, `by_m` (so much farther) 2, `spread_m` (from the middle of the group) \
+         1.5, walking 3.\n\
          Triggers: {}\nActions: {}\nGestures: {}\n## Relations to the robot's way\n{}Script, when: {}\nScript, act: {}\n\
          ## Tests for setup\n{}## Tests for outcome\n{}",
         forms(&triggers()),
@@ -50,6 +35,21 @@ pub(crate) fn proposal_tables() -> String {
         tests(setup),
         tests(outcome),
     )
+}
+
+/// The tests of a few requests only that the words of one call for, a line each; all of them where nobody can tell.
+pub(crate) fn called_for(text: Option<&str>) -> String {
+    let wanted = |test: &Test| match test.shown {
+        Shown::Called(words) => text.is_none_or(|text| hints::called_for(text, words)),
+        Shown::InFull | Shown::ByName => false,
+    };
+    let (setup, outcome): (Vec<_>, Vec<_>) =
+        predicates().into_iter().filter(wanted).partition(|test| test.role == ClauseRole::Setup);
+    let told = |head: &str, tests: &[Test]| {
+        let rows: String = tests.iter().map(Test::told).collect();
+        if rows.is_empty() { rows } else { format!("## More tests for {head}\n{rows}") }
+    };
+    told("setup", &setup) + &told("outcome", &outcome)
 }
 
 /// A gesture, with what people call it where its name does not say so.
@@ -76,7 +76,7 @@ const WAYS: [(Relation, &str); 9] = [
     (Relation::Static, "one node, the encounter itself; start and goal are the same."),
     (
         Relation::Leaving,
-        "starts inside the room or elevator, comes out of its door, meets the robot in front of it, goes on.",
+        "starts inside the room or elevator, comes out of its door, meets the robot at a node in front of it, of whatever class, goes on.",
     ),
     (
         Relation::Aside,
@@ -118,6 +118,7 @@ fn signature(form: &Value) -> String {
     }
     let part = |word: &str| match word.split_once('=') {
         Some((name, value)) if value.contains("..") => format!("{name}=1..3"),
+        Some((_, "robot")) => word.to_owned(),
         Some((name, _)) => name.to_owned(),
         None => word.to_owned(),
     };
@@ -224,8 +225,8 @@ enum Shown {
     InFull,
     /// Name and values, which say all that an author needs.
     ByName,
-    /// Name and values in one line with the other tests of a few requests only.
-    Rarely,
+    /// Only where a request has a word that begins with one of these.
+    Called(&'static [&'static str]),
 }
 
 impl Test {
@@ -237,8 +238,21 @@ impl Test {
         Self { note: Some(note), ..self }
     }
 
-    fn rarely(self) -> Self {
-        Self { shown: Shown::Rarely, ..self }
+    fn called_by(self, words: &'static [&'static str]) -> Self {
+        Self { shown: Shown::Called(words), ..self }
+    }
+
+    /// Name, values and meaning in a line.
+    fn told(&self) -> String {
+        let line = signature(&self.form);
+        let said = line.split(' ').next().unwrap_or_default().replace('_', " ");
+        // Some names say it all.
+        if self.shown == Shown::ByName || self.meaning.trim_start_matches("the ").starts_with(&said) {
+            line + "\n"
+        } else {
+            let note = self.note.map_or_else(String::new, |note| format!("; {note}"));
+            format!("{line}: {}{note}\n", self.meaning)
+        }
     }
 }
 
@@ -249,6 +263,11 @@ fn setup(test: &Predicate, meaning: &'static str) -> Test {
 fn outcome(test: &Predicate, meaning: &'static str) -> Test {
     Test { form: json!(test), meaning, note: None, role: ClauseRole::Outcome, shown: Shown::InFull }
 }
+
+/// Words of requests with rooms and elevators.
+const DOOR: &[&str] = &["inside", "elevator", "lift", "room", "out", "leav", "exit", "door", "enter", "into"];
+/// Words of requests with many people.
+const CROWD: &[&str] = &["crowd", "many", "busy", "stream", "flow", "dense", "surround", "rush"];
 
 fn other() -> HumanId {
     HumanId::new(2)
@@ -292,7 +311,7 @@ fn relations() -> Vec<(Value, String)> {
         row(&Relation::Ahead, "walks ahead of the robot"),
         row(&Relation::Crossing, "crosses the robot's way"),
         row(&Relation::Static, "stands where the robot passes; every member of a standing group"),
-        row(&Relation::Leaving, "comes out of the room or elevator"),
+        row(&Relation::Leaving, "comes out of the room or elevator, may cross then"),
         row(&Relation::Staying, "stays inside it as the robot enters"),
         row(&Relation::Abreast, "walks beside the robot"),
         row(&Relation::Aside, "stands beside its way, never in it; not met"),
@@ -328,7 +347,8 @@ fn predicates() -> Vec<Test> {
     vec![
         setup(&Predicate::Humans { count: 2 }, "so many are there all the time").by_name(),
         setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter").by_name(),
-        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for").rarely(),
+        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time")
+            .called_by(&["again", "twice", "times", "return"]),
         setup(&Predicate::HeadOn { human }, "comes straight at the robot"),
         setup(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses the robot's way"),
         setup(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot").by_name(),
@@ -345,16 +365,26 @@ fn predicates() -> Vec<Test> {
         )
         .by_name(),
         setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot").by_name(),
-        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it").rarely(),
+        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it").called_by(&[
+            "parallel",
+            "alongside",
+            "beside",
+            "direction",
+        ]),
         setup(
             &Predicate::Flow { count: 4, within_m: 4.0, angle_deg: [0.0, 30.0] },
-            "so many walk by at such angles to the robot's heading",
+            "so many walk by at such angles to the robot's heading (0 with it, 180 against it)",
         )
-        .rarely(),
+        .called_by(CROWD),
         setup(&Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 }, "people per m² round the robot")
-            .rarely(),
-        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once").rarely(),
-        setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time").rarely(),
+            .called_by(CROWD),
+        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once")
+            .called_by(CROWD),
+        setup(
+            &Predicate::Converges { within_m: 2.5, within_s: 4.0 },
+            "all come to the encounter within so many seconds",
+        )
+        .called_by(&["same", "converg", "once"]),
         setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way").by_name(),
         setup(&Predicate::Looks { human, for_s: 2.0 }, "stands and looks at it"),
         setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still").by_name(),
@@ -366,36 +396,47 @@ fn predicates() -> Vec<Test> {
         )
         .by_name(),
         setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it").by_name(),
-        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door").by_name(),
+        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door").called_by(DOOR),
         setup(&Predicate::StaysAside { human }, "stands beside the way, never in it").by_name(),
-        setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door").by_name(),
-        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door").by_name(),
+        setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door").called_by(DOOR),
+        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door").called_by(DOOR),
         setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near")
-            .rarely(),
-        setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near").rarely(),
+            .called_by(&["open"]),
+        setup(
+            &Predicate::HiddenUntil { human, within_m: 4.0 },
+            "no line of sight before they are so near (4 to 6), or a door opens",
+        )
+        .called_by(&["sudden", "surpris", "appear", "unexpect", "hid", "corner", "emerg", "blind"]),
         setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together").by_name(),
         setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together").by_name(),
-        setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line").by_name(),
+        setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line")
+            .called_by(&["queu", "line"]),
         setup(&Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() }, "one test before another")
-            .noted("c1 leads `setup`"),
+            .noted("where the text says what comes first; the tests by their places in `setup` from c1, each at the time it is first seen; a reaction follows its reason without it")
+            .called_by(&["first", "then", "further", "later", "next", "final", "after", "before"]),
         setup(
             &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: true },
             "is first where they meet",
         )
-        .noted("crosses in front, or `at_door`: through the door"),
+        .noted("crosses in front, or `at_door`: through the door")
+        .called_by(&["first", "before", "after", "front", "yield", "let", "priority", "wait"]),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place",
         )
         .by_name(),
-        setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time").rarely(),
+        setup(
+            &Predicate::OnTime { human, gap_s: 4.0 },
+            "robot and human come to their encounter within so many seconds",
+        )
+        .called_by(&["sudden", "time"]),
         setup(&Predicate::Plausible, "everybody moves as people do").by_name(),
         outcome(&Predicate::RobotArrives, "the robot gets to its goal").by_name(),
         outcome(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance"),
-        outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out").by_name(),
-        outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in").by_name(),
-        outcome(&Predicate::RobotJoins { group }, "the robot ends at its rim"),
-        outcome(&Predicate::RobotLeavesGroup { group }, "the robot begins at it"),
+        outcome(&Predicate::RobotEntersLast, "the robot enters after all who leave are out").called_by(DOOR),
+        outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in").called_by(DOOR),
+        outcome(&Predicate::RobotJoins { group }, "the robot ends at its rim").called_by(&["join"]),
+        outcome(&Predicate::RobotLeavesGroup { group }, "the robot begins at it").called_by(&["leav", "part"]),
         outcome(&Predicate::RobotObeys { gesture: Gesture::Wait, within_s: 2.0 }, "the robot stops on the gesture"),
     ]
 }
@@ -407,7 +448,7 @@ mod tests {
     #[test]
     fn every_alternative_of_the_types_has_a_row() {
         let schema = serde_json::to_value(schemars::schema_for!(socrates_model::Proposal)).unwrap();
-        let text = proposal_tables();
+        let text = proposal_tables() + &called_for(None);
         for name in ["Trigger", "Action", "Relation", "RobotWhen", "RobotDo", "Predicate"] {
             let found = crate::schema::alternatives(&schema["$defs"][name]);
             assert!(!found.is_empty(), "{name}");

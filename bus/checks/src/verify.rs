@@ -90,13 +90,21 @@ fn must_setup(proposal: &Proposal) -> impl Iterator<Item = &Clause> {
     proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup)
 }
 
-/// Whether a clause is about the human: directly, as the leader it follows, or through its group.
+/// Whether a clause is about the human: directly, as the leader it follows, through its group, or by what it puts in order.
 pub(crate) fn speaks_of(clause: &Clause, human: HumanId, proposal: &Proposal) -> bool {
     let by_group = |id| proposal.groups.iter().any(|group| group.id == id && group.members.contains(&human));
     let led = matches!(&clause.predicate, Predicate::Follows { leader, .. } if *leader == human.into());
     let grouped = clause.predicate.group().is_some_and(by_group);
     let all = clause.predicate.takes_in_all(u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX));
-    led || grouped || all || clause.predicate.human() == Some(human)
+    // An order tells of everybody of whom its two clauses do.
+    let ordered = if let Predicate::Order { first, then } = &clause.predicate {
+        let own =
+            |other: &&Clause| [first, then].contains(&&other.id) && !matches!(other.predicate, Predicate::Order { .. });
+        proposal.expected_events.iter().filter(own).any(|other| speaks_of(other, human, proposal))
+    } else {
+        false
+    };
+    led || grouped || all || ordered || clause.predicate.human() == Some(human)
 }
 
 const fn needs_clause(kind: &FactKind) -> bool {
@@ -214,5 +222,22 @@ mod tests {
         proposal.expected_events[1].id = double;
         proposal.expected_events[2].predicate = Predicate::Order { first: "c1".into(), then: "c99".into() };
         assert_eq!(codes(&clauses(&proposal)), ["P-VERIFY", "P-VERIFY"]);
+    }
+
+    #[test]
+    fn an_order_speaks_of_those_whose_deeds_it_puts_in_order() {
+        let proposal = crossing_proposal();
+        let of = |human: u32| {
+            let own = |clause: &&Clause| clause.predicate.human() == Some(HumanId::new(human));
+            proposal.expected_events.iter().find(own).unwrap().id.clone()
+        };
+        let ordered = |first: &str, then: &str| {
+            let predicate = Predicate::Order { first: first.to_owned(), then: then.to_owned() };
+            let clause = Clause { id: "c9".to_owned(), predicate, ..proposal.expected_events[0].clone() };
+            [1, 2].map(|human| speaks_of(&clause, HumanId::new(human), &proposal))
+        };
+        assert_eq!(ordered(&of(1), &of(2)), [true, true]);
+        assert_eq!(ordered(&of(2), &of(2)), [false, true]);
+        assert_eq!(ordered("c77", "c78"), [false, false]);
     }
 }

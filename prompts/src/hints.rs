@@ -1,0 +1,96 @@
+//! What the proposal's question says only where the words of a request call for it: what is seldom needed would cost every other request
+//! its tokens. Nothing here decides what an answer may say: the form and the checks know every test.
+
+/// Something to say of requests with certain words.
+struct Hint {
+    /// Beginnings of words, in lower case.
+    words: &'static [&'static str],
+    /// What is said.
+    says: &'static str,
+}
+
+/// Hints in the order in which they are told.
+const HINTS: [Hint; 9] = [
+    Hint {
+        words: &[
+            "group", "together", "team", "pair", "couple", "talk", "chat", "convers", "discuss", "friend", "family",
+        ],
+        says: "People who stand or walk together are a group; people who merely come at the same time are none. Talking is standing in \
+               a group: `formation` is its test as well, a line for each fact. What one member does besides has a rule and a test of their own. Distances of their rules: at most \
+               2.5, as a standing group holds until the robot is within 3.",
+    },
+    Hint {
+        words: &["inside", "elevator", "lift", "room", "out", "leav", "exit", "emerg"],
+        says: "Inside at the beginning: relation `leaving` or `staying`, tests `leaves`, `stays_inside`. How many are inside is \
+               shown by `humans`, and is no fact of its own if stated. Out of a door \
+               and across the robot's way: relation `leaving`, tests `leaves` and `crosses`. Doors open by themselves.",
+    },
+    Hint {
+        words: &["startl", "surpris", "frighten", "scare", "afraid", "shock", "fear", "nervous"],
+        says: "A feeling shows as an action: startled or surprised people `look_at_robot`, frightened ones `run_away`.",
+    },
+    Hint {
+        words: &["follow", "guid", "accompan", "escort", "lead"],
+        says: "Following the robot: relation `behind` or `ahead`, a rule such as `robot_near:5 -> follow_robot`, the test `follows \
+               follower=human_1 leader=robot`.",
+    },
+    Hint {
+        words: &["block", "obstruct", "let", "while", "until", "then"],
+        says: "One thing and then another: a rule with `for` ends, and the next with the same trigger goes on, as in `robot_near:3 -> \
+               block for=6`, `robot_near:3 -> give_way`.",
+    },
+    Hint {
+        words: &["carry", "carri", "bring", "deliver", "fetch", "push", "take", "move", "transport", "load"],
+        says: "What the robot carries, fetches or delivers, and where it goes on to, is its errand and no part of the run: no line says it.",
+    },
+    Hint {
+        words: &["wait"],
+        says: "Waiting for the robot: `stand_still` under a trigger. The robot's waiting is a line of its script, or an outcome.",
+    },
+    Hint { words: &["queu"], says: "A queue is a standing group with `queues`." },
+    Hint {
+        words: &["wheelchair", "phone", "cart", "trolley", "crutch", "suitcase"],
+        says: "What people hold or sit in is not played: their pace and what they do is; say it with `cannot_be_played`.",
+    },
+];
+
+/// Whether a text has a word that begins with one of these.
+pub(crate) fn called_for(text: &str, words: &[&str]) -> bool {
+    let lower = text.to_lowercase();
+    let mut each = lower.split(|c: char| !c.is_alphanumeric());
+    each.any(|word| words.iter().any(|beginning| word.starts_with(beginning)))
+}
+
+/// What texts call for, a line each; every hint where nobody can tell.
+pub(crate) fn of(text: Option<&str>) -> impl Iterator<Item = &'static str> {
+    let wanted = move |hint: &&Hint| text.is_none_or(|text| called_for(text, hint.words));
+    HINTS.iter().filter(wanted).map(|hint| hint.says)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hint_comes_with_its_words_and_without_them_stays_away() {
+        let told = |text: &str| of(Some(text)).collect::<Vec<_>>();
+        assert!(told("A nurse crosses its way.").is_empty());
+        assert_eq!(told("Two nurses CHAT.").len(), 1);
+        assert!(told("Two nurses chat.")[0].contains("`formation`"));
+        // A word inside another one calls for nothing.
+        assert!(told("An unfriendly steam pipe").is_empty());
+        assert_eq!(of(None).count(), HINTS.len());
+    }
+
+    #[test]
+    fn every_hint_speaks_of_what_the_tables_have() {
+        let tables = crate::vocabulary::proposal_tables() + &crate::vocabulary::called_for(None);
+        for Hint { words, says } in &HINTS {
+            assert!(words.iter().all(|word| !word.is_empty() && *word == word.to_lowercase()), "{words:?}");
+            for name in says.split('`').skip(1).step_by(2).flat_map(|code| code.split([' ', ':', '='])) {
+                let known = name.starts_with(|c: char| c.is_lowercase()) && name.contains('_');
+                assert!(!known || name == "cannot_be_played" || name == "human_1" || tables.contains(name), "{name}");
+            }
+        }
+    }
+}
