@@ -15,15 +15,15 @@ const HINTS: [Hint; 9] = [
         words: &[
             "group", "together", "team", "pair", "couple", "talk", "chat", "convers", "discuss", "friend", "family",
         ],
-        says: "People who stand or walk together are a group; people who merely come at the same time are none. Talking is standing in \
-               a group: `formation` is its test as well, a line for each fact. What one member does besides has a rule and a test of their own. Distances of their rules: at most \
-               2.5, as a standing group holds until the robot is within 3.",
+        says: "People who stand or walk together are a group; people who only come at the same time are none. Talking is standing in a \
+               group: `formation` is its test as well, a line for each fact. What one member does besides has a rule and a test of their \
+               own. Distances in their rules: at most 2.5, as a standing group holds until 3.",
     },
     Hint {
         words: &["inside", "elevator", "lift", "room", "out", "leav", "exit", "emerg"],
         says: "Inside at the beginning: relation `leaving` or `staying`, tests `leaves`, `stays_inside`. How many are inside is \
-               shown by `humans`, and is no fact of its own if stated. Out of a door \
-               and across the robot's way: relation `leaving`, tests `leaves` and `crosses`. Doors open by themselves.",
+               shown by `humans`, and is no fact of its own if stated. Out of a door and across the robot's way: relation `leaving`, \
+               tests `leaves` and `crosses`. Doors open by themselves.",
     },
     Hint {
         words: &["startl", "surpris", "frighten", "scare", "afraid", "shock", "fear", "nervous"],
@@ -41,7 +41,7 @@ const HINTS: [Hint; 9] = [
     },
     Hint {
         words: &["carry", "carri", "bring", "deliver", "fetch", "push", "take", "move", "transport", "load"],
-        says: "What the robot carries, fetches or delivers, and where it goes on to, is its errand and no part of the run: no line says it.",
+        says: "What the robot carries, fetches or delivers, and where it goes on to, is its errand: no fact of the run.",
     },
     Hint {
         words: &["wait"],

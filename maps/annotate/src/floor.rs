@@ -8,7 +8,7 @@ use socrates_model::{Cell as Kind, Grid, Point};
 
 use crate::cells::{Cell, Extent, ROUND, SIDES, height, parts};
 use crate::remark::{Remark, RemarkKind};
-use crate::things::Things;
+use crate::things::{Blocks, Things};
 
 /// A position on the picture, m; see the module.
 pub(crate) type Spot = Point;
@@ -44,6 +44,8 @@ pub(crate) struct Floor {
     pub(crate) bare_m: Layer<f32>,
     /// Furniture.
     pub(crate) things: Things,
+    /// Blocks that stand free, outlines among them.
+    pub(crate) blocks: Blocks,
 }
 
 #[expect(
@@ -68,6 +70,7 @@ impl Floor {
             clear_m: Layer::filled(0, 0, 0.0),
             bare_m: Layer::filled(0, 0, 0.0),
             things: Things::none(),
+            blocks: Blocks::of(&Layer::filled(0, 0, 0.0), grid.resolution_m),
         };
         let mut cleaned = grid.clone();
         if floor.drop_dust(&mut cleaned, remarks) {
@@ -79,6 +82,7 @@ impl Floor {
         floor.things = Things::of(&cleaned);
         floor.cleaned = cleaned;
         floor.clear_m = floor.sampled(floor.clean.as_ref().unwrap_or(&floor.raw));
+        floor.blocks = Blocks::of(&floor.clear_m, floor.cell_m);
         let mut bare = floor.cleaned.clone();
         floor.bare_m = if floor.things.clear_away(&mut bare) {
             floor.sampled(&DistanceField::new(&bare))

@@ -1,14 +1,19 @@
 //! Things that stand free on the floor and are thicker than walls: furniture, stands, machines.
 
 use socrates_maps::Layer;
-use socrates_model::{Cell, Grid};
+use socrates_model::{Cell as Kind, Grid};
 
-use crate::cells::{ROUND, SIDES, parts, step};
+use crate::cells::{Cell, Part, ROUND, SIDES, height, parts, step};
 
 /// Longest thing that is taken for furniture, m: what is longer is a row of racks or the core of a building.
 const LONGEST_M: f64 = 5.5;
 /// Twice the area over the rim of what is thicker than a free piece of wall, m: a wall of 0.3 m has less, a desk of 1.6 by 0.8 m 0.5.
 const THICK_M: f64 = 0.32;
+
+/// Walls with less than this between them are one, m: scanners leave gaps in outlines.
+const GAP_M: f64 = 0.3;
+/// Sides of a block, m: a pier of a wall is thinner, no room is smaller than its walls.
+const BLOCK_M: (f64, f64) = (0.8, 2.6);
 
 /// Free-standing things of a map.
 pub(crate) struct Things {
@@ -26,7 +31,7 @@ pub(crate) struct Things {
 impl Things {
     /// The things of a grid.
     pub(crate) fn of(grid: &Grid) -> Self {
-        let blocked = Layer { width: grid.width, values: grid.cells.iter().map(|cell| *cell != Cell::Free).collect() };
+        let blocked = Layer { width: grid.width, values: grid.cells.iter().map(|cell| *cell != Kind::Free).collect() };
         let (of_cell, found) = parts(&blocked, &ROUND);
         let mut rims = vec![0_usize; found.len()];
         for row in 0..grid.height {
@@ -59,7 +64,7 @@ impl Things {
     pub(crate) fn clear_away(&self, grid: &mut Grid) -> bool {
         for (cell, number) in grid.cells.iter_mut().zip(&self.of_cell.values) {
             if (*number as usize).checked_sub(1).and_then(|at| self.is_thing.get(at)) == Some(&true) {
-                *cell = Cell::Free;
+                *cell = Kind::Free;
             }
         }
         self.is_thing.contains(&true)
@@ -70,5 +75,38 @@ impl Things {
         let inside = px >= 0.0 && py >= 0.0;
         let number = if inside { self.of_cell.get(px as usize, py as usize).unwrap_or(0) } else { 0 };
         (number as usize).checked_sub(1).and_then(|at| self.is_thing.get(at)) == Some(&true)
+    }
+}
+
+/// Free-standing blocks, outlines of crates and pallets among them: what lies between two of them, or beside one, is no door.
+pub(crate) struct Blocks {
+    /// Number of what stands at each working cell, from 1.
+    of_cell: Layer<u32>,
+    is_block: Vec<bool>,
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "clearances and cells of a map")]
+impl Blocks {
+    /// The blocks of a floor by the clearance of its working cells, m, and their side, m.
+    pub(crate) fn of(clear_m: &Layer<f32>, cell_m: f64) -> Self {
+        let near = (0.5 * GAP_M) as f32;
+        let beside = Layer { width: clear_m.width, values: clear_m.values.iter().map(|clear| *clear < near).collect() };
+        let (of_cell, found) = parts(&beside, &ROUND);
+        let size = (beside.width, height(&beside));
+        // What is near a block on both sides belongs to its part.
+        let side_m = |cells: usize| cells as f64 * cell_m - GAP_M;
+        let is_block = |part: &Part| {
+            let extent = &part.extent;
+            !extent.is_at_rim(size) && side_m(extent.shortest()) >= BLOCK_M.0 && side_m(extent.longest()) <= BLOCK_M.1
+        };
+        let is_block = found.iter().map(is_block).collect();
+        Self { of_cell, is_block }
+    }
+
+    /// The block at a working cell.
+    pub(crate) fn at(&self, (column, row): Cell) -> Option<u32> {
+        let number = self.of_cell.get(column, row)?;
+        let at = (number as usize).checked_sub(1)?;
+        (self.is_block.get(at) == Some(&true)).then_some(number)
     }
 }

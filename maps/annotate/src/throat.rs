@@ -187,8 +187,10 @@ impl Throat {
 pub(crate) fn openings(floor: &Floor, spots: &[Spot]) -> Vec<Throat> {
     let between_walls = |throat: &Throat| {
         let outward = (throat.to - throat.from).normalize() * (2.0 * floor.map_cell_m);
-        !floor.things.holds(floor.pixel(&(throat.from - outward)))
-            && !floor.things.holds(floor.pixel(&(throat.to + outward)))
+        let jambs = [throat.from - outward, throat.to + outward];
+        // The two jambs of a booth are of one block; a gap between two blocks, or between one and a wall, is no door.
+        let [from, to] = jambs.map(|jamb| floor.blocks.at(floor.cell(&jamb)));
+        jambs.iter().all(|jamb| !floor.things.holds(floor.pixel(jamb))) && from == to
     };
     let sense = |spot: &Spot| floor.clean_m(spot);
     let probed = spots.iter().filter_map(|spot| probe(&sense, spot, WIDEST_OPEN_M)).filter_map(|throat| {

@@ -191,6 +191,28 @@ mod annotation {
     }
 
     #[test]
+    fn the_gap_between_two_outlined_crates_is_no_door_and_that_of_a_booth_is_one() {
+        // Outlines of one cell of 0.05 m with gaps, as scanners see crates; 1.2 m wide, 1.0 m between them.
+        let outline = |column: usize, row: usize, left: usize, top: usize, side: usize| {
+            let (dx, dy) = (column.wrapping_sub(left), row.wrapping_sub(top));
+            dx < side && dy < side && (dx == 0 || dy == 0 || dx + 1 == side || dy + 1 == side)
+        };
+        let crates = drawn(300, 200, 0.05, |column, row| {
+            let wall =
+                (outline(column, row, 80, 80, 24) || outline(column, row, 124, 80, 24)) && (column + row) % 5 != 0;
+            wall.then_some(Cell::Occupied)
+        });
+        let made = found(&crates);
+        assert_eq!((made.counts.doors, made.counts.rooms), (0, 0), "{:?}", made.doors);
+        // A booth of 2.4 m with an opening of 0.9 m.
+        let booth = drawn(300, 200, 0.05, |column, row| {
+            let opening = row == 80 && (115..133).contains(&column);
+            (outline(column, row, 100, 80, 48) && !opening).then_some(Cell::Occupied)
+        });
+        assert_eq!(found(&booth).counts.doors, 1);
+    }
+
+    #[test]
     fn several_floors_in_one_picture_are_said_and_each_is_found_by_a_point_on_it() {
         let (one, other) = (shipped::load("hospital").unwrap().grid, shipped::load("office").unwrap().grid);
         let width = one.width + other.width;
