@@ -33,8 +33,19 @@ fn a_bundle_goes_out_in_every_format_with_the_same_bytes_again() {
     assert!(wrong.code == 2 && wrong.err.contains("several") && wrong.err.contains("hunav-1.1"), "{}", wrong.err);
     let wrong = socrates(at, "none", &["export", "bundle-hall", "--to", "dxf"]);
     assert!(wrong.code == 2 && wrong.err.contains("`dxf` is no format"), "{}", wrong.err);
-    let formats: Vec<&str> = wrong.err.split("choose one of: ").nth(1).unwrap().trim().split(", ").collect();
+    let listed = socrates(at, "listed", &["--format", "json", "export", "--formats"]).json();
+    let formats: Vec<&str> = listed.as_array().unwrap().iter().map(|format| format["name"].as_str().unwrap()).collect();
     assert!(formats.len() >= 6, "{formats:?}");
+    // Formats of the page that are not listed want a feature, and say so.
+    let page = std::fs::read_to_string(socrates_tests::root().join("docs/export.md")).unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| `")).map(|row| row.split('`').nth(1).unwrap());
+    let unlisted: Vec<&str> = rows.filter(|name| !formats.contains(name)).collect();
+    for format in &unlisted {
+        let told = socrates(at, format, &["export", "bundle-hall", "--to", format, "--out", "unlisted"]);
+        assert!(told.code == 2 && told.err.contains("--features"), "{format}: {}", told.err);
+        assert!(!at.join("unlisted").exists(), "{format} leaves files behind");
+    }
+    assert!(unlisted.len() <= 1, "{unlisted:?}");
     for format in &formats {
         let outs = ["one", "two"].map(|name| format!("{name} ö/{format}"));
         for out in &outs {

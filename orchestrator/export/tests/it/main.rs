@@ -7,6 +7,8 @@ mod kits;
 #[cfg(test)]
 mod scenarios;
 #[cfg(test)]
+mod simulators;
+#[cfg(test)]
 mod whole;
 #[cfg(test)]
 mod worlds;

@@ -62,6 +62,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `rosbags` 0.11.9 and `mcap-ros2-support` 0.6.0",
     needs_run: true,
+    feature: None,
     lacks: &[
         (Content::Leaves, "messages of ROS have no place for it"),
         (Content::Events, "messages of ROS have no place for it"),
