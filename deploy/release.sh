@@ -38,7 +38,7 @@ version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # program of this machine with every feature; a binary that was given makes those that it writes itself.
 samples=$(mktemp -d)
 trap 'rm -rf "$samples"' EXIT
-if [ -n "$binary" ]; then
+if [ -n "$binary" ] && [ "${targets[0]}" = "$host" ]; then
   maker=$(realpath "$binary")
 else
   cargo build --release --locked -p socrates --features parquet

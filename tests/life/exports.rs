@@ -69,6 +69,41 @@ fn a_bundle_goes_out_in_every_format_with_the_same_bytes_again() {
     assert!(told.code == 2 && told.err.contains("`nowhere`"), "{}", told.err);
 }
 
+/// A bundle without one of its files, or with one of an older version, is refused by its name and leaves nothing behind.
+#[test]
+fn half_bundles_and_older_ones_are_refused_with_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let (made, _) = make(at, "halle ö", WAREHOUSE, &[]);
+    assert!(matches!(made.code, 0 | 3), "{}", made.err);
+    let details = at.join("bundle-halle ö/details");
+    let export = |name: &str| {
+        let told = socrates(at, name, &["export", "bundle-halle ö", "--to", "usda", "--out", "out"]);
+        (told.code, told.err)
+    };
+    for file in ["manifest.json", "location.json", "proposal.json", "paths.json", "behaviors.json"] {
+        let path = details.join(file);
+        let good = std::fs::read_to_string(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let (code, said) = export(&format!("without-{file}"));
+        assert!(code == 2 && said.contains(file), "without {file}: {code} {said}");
+        std::fs::write(&path, &good[..good.len() / 2]).unwrap();
+        let (code, said) = export(&format!("half-{file}"));
+        assert!(code == 2 && said.contains(file), "half of {file}: {code} {said}");
+        let mut old: serde_json::Value = serde_json::from_str(&good).unwrap();
+        if old.get("format").is_some() {
+            old["format"] = 0.into();
+            std::fs::write(&path, old.to_string()).unwrap();
+            let (code, said) = export(&format!("old-{file}"));
+            assert!(code == 2 && said.contains(file) && said.contains("format"), "older {file}: {code} {said}");
+        }
+        std::fs::write(&path, good).unwrap();
+        assert!(!at.join("out").exists(), "{file}");
+    }
+    let (code, said) = export("whole");
+    assert_eq!(code, 0, "{said}");
+}
+
 #[test]
 fn a_library_of_packed_bundles_has_a_folder_for_each_and_names_those_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();

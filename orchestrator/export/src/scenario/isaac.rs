@@ -35,7 +35,6 @@ macro_rules! lacks {
             (Content::Radii, MODEL),
             (Content::Roles, WORDS),
             (Content::Groups, WORDS),
-            (Content::DoorRules, "a stage has no rules: doors that are not always open stand closed"),
             (Content::Graph, WORDS),
             (Content::AreaNames, WORDS),
             (Content::Encounters, "nobody waits for anybody"),
@@ -104,9 +103,9 @@ fn length_s(scenario: &Scenario) -> f64 {
 }
 
 /// Stage and way of the robot, which all generations share.
-fn shared(scenario: &Scenario, name: &str) -> Result<Files, Unusable> {
+fn shared(scenario: &Scenario, name: &str, losses: &mut Losses) -> Result<Files, Unusable> {
     Ok(Files::from([
-        (format!("{name}.usda"), File::Text(stage(scenario, false)?)),
+        (format!("{name}.usda"), File::Text(stage(scenario, false, losses)?)),
         ("robot.yaml".to_owned(), File::Text(super::sdf::robot_yaml(scenario))),
     ]))
 }
@@ -135,7 +134,7 @@ fn write_commands(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unu
          asset_path: {name}.usda\n  character:\n    asset_path: {CHARACTERS}\n    command_file: commands.txt\n    num: {}\n",
         people.len()
     );
-    let mut files = shared(scenario, &name)?;
+    let mut files = shared(scenario, &name, losses)?;
     files.insert("commands.txt".to_owned(), File::Text(commands));
     files.insert(format!("{name}_agents.yaml"), File::Text(config));
     Ok(files)
@@ -166,7 +165,7 @@ fn write_groups(scenario: &Scenario, losses: &mut Losses, version: &str) -> Resu
             config.push_str(&format!("            - [{}, {}, 0.0]\n", real(leg.at.x), real(leg.at.y)));
         }
     }
-    let mut files = shared(scenario, &name)?;
+    let mut files = shared(scenario, &name, losses)?;
     files.insert(format!("{name}_agents.yaml"), File::Text(config));
     Ok(files)
 }

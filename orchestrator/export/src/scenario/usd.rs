@@ -24,6 +24,8 @@ const ROBOT_M: f64 = 0.5;
 const RADIUS_M: f64 = 0.3;
 /// Thickness of the floor, m.
 const FLOOR_M: f64 = 0.1;
+/// Width of the lines of paths, m.
+const LINE_M: f64 = 0.05;
 /// Height of the slabs over cells that were never seen, m.
 const UNKNOWN_M: f64 = 0.02;
 
@@ -45,7 +47,6 @@ pub(super) const FORMAT: Format = Format {
         (Content::Speeds, STATES),
         (Content::Roles, WORDS),
         (Content::Groups, WORDS),
-        (Content::DoorRules, "a stage has no rules: doors that are not always open stand closed"),
         (Content::Graph, WORDS),
         (Content::AreaNames, WORDS),
         (Content::Encounters, WORDS),
@@ -58,11 +59,15 @@ pub(super) const FORMAT: Format = Format {
 
 fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
     let name = file_name(&scenario.name, losses);
-    Ok(Files::from([(format!("{name}.usda"), File::Text(stage(scenario, true)?))]))
+    Ok(Files::from([(format!("{name}.usda"), File::Text(stage(scenario, true, losses)?))]))
 }
 
 /// The text of a stage, with or without robot and people.
-pub(super) fn stage(scenario: &Scenario, with_agents: bool) -> Result<String, Unusable> {
+pub(super) fn stage(scenario: &Scenario, with_agents: bool, losses: &mut Losses) -> Result<String, Unusable> {
+    for place in Content::DoorRules.places(scenario) {
+        let why = "a stage has no rules: doors that are not always open stand closed";
+        losses.note("times of doors", place, why);
+    }
     let mut stage = Stage::default();
     let run = scenario.recording.as_ref().filter(|_| with_agents);
     let first = run.and_then(|run| run.frames.first()).map_or(0, |state| state.tick);
@@ -179,13 +184,15 @@ impl Stage {
         for (agent, nodes) in all.filter(|(_, nodes)| nodes.len() > 1) {
             let points: Vec<_> = nodes.iter().filter_map(|id| graph.node(id)).map(|node| node.at).collect();
             let text: Vec<String> = points.iter().map(|at| format!("({}, {}, 0)", real(at.x), real(at.y))).collect();
-            let low = |axis: usize| real(points.iter().map(|at| at[axis]).fold(f64::INFINITY, f64::min));
-            let high = |axis: usize| real(points.iter().map(|at| at[axis]).fold(f64::NEG_INFINITY, f64::max));
+            let half = LINE_M / 2.0;
+            let low = |axis: usize| real(points.iter().map(|at| at[axis]).fold(f64::INFINITY, f64::min) - half);
+            let high = |axis: usize| real(points.iter().map(|at| at[axis]).fold(f64::NEG_INFINITY, f64::max) + half);
+            let (thin, wide) = (real(half), real(LINE_M));
             self.add(format_args!(
                 "        def BasisCurves \"path_{agent}\"\n        {{\n            int[] curveVertexCounts = [{}]\n            \
-                 float3[] extent = [({}, {}, 0), ({}, {}, 0)]\n            point3f[] points = [{}]\n            \
+                 float3[] extent = [({}, {}, -{thin}), ({}, {}, {thin})]\n            point3f[] points = [{}]\n            \
                  uniform token purpose = \"guide\"\n            uniform token type = \"linear\"\n            \
-                 float[] widths = [0.05] (\n                interpolation = \"constant\"\n            )\n        }}\n",
+                 float[] widths = [{wide}] (\n                interpolation = \"constant\"\n            )\n        }}\n",
                 points.len(),
                 low(0),
                 low(1),

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod graphs;
 #[cfg(test)]
+mod hard;
+#[cfg(test)]
 mod kits;
 #[cfg(test)]
 mod scenarios;

@@ -6,7 +6,7 @@ use socrates_model::{AgentId, AgentState, HumanProposal, Point};
 
 use super::super::Scenario;
 use super::super::content::Content;
-use super::super::frames::{angle, plain_name, real};
+use super::super::frames::{angle, plain_name, real, small_ids};
 use super::Kit;
 use super::trees::Trees;
 use crate::graph::{Unusable, micro};
@@ -38,6 +38,7 @@ pub(super) fn agents(
         let problem = format!("{} people; an agents file has 1 to {MAX_AGENTS}", humans.len());
         return Err(Unusable::new("proposal.json humans", problem, "choose a format of tracks, such as `jupedsim`"));
     }
+    small_ids(humans.iter().map(|human| human.id.into()))?;
     let map = plain_name(&scenario.location.name);
     if map != scenario.location.name {
         let at = format!("location `{}`", scenario.location.name);
