@@ -72,7 +72,8 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
     inputs.seed = options.seed.unwrap_or(1);
     inputs.duration_s = options.duration;
     // Number 0 of a recording is the robot, unless the file has somebody of this number.
-    let replayed = tracks.as_ref().and_then(|tracks| tracks.get(0)).filter(|_| agents.agents.iter().all(|agent| agent.id != 0));
+    let replayed =
+        tracks.as_ref().and_then(|tracks| tracks.get(0)).filter(|_| agents.agents.iter().all(|agent| agent.id != 0));
     inputs.robot = match &options.robot {
         Some(text) => Some(robot(text)?),
         None => replayed.cloned().map(RobotSpec::replaying),

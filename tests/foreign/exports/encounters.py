@@ -3,7 +3,7 @@
     python tests/foreign/exports/encounters.py target/ci/socrates OUT
 
 OUT is the folder of figures.py. The robot replays its run; an encounter counts where robot and person come within 2 m of each other
-within 3 m of its node.
+within 3 m of its node, and is counted for the kits where it did so in the run.
 """
 
 import csv, json, math, pathlib, subprocess, sys
@@ -54,6 +54,11 @@ def main():
                 continue
             played[form] = tracks(folder / "agents.csv")
         for one in encounters:
+            if one["human"] not in run or not meets(run["robot"], run[one["human"]], nodes[one["node"]]):
+                # What did not happen in the run cannot be played again.
+                counts["run"][0] += 1
+                counts["run"][2].append(f"{bundle.name} {one['human']}")
+                continue
             for form, found in played.items():
                 counts[form][0] += 1
                 is_met = bool(found) and one["human"] in found and meets(run["robot"], found[one["human"]], nodes[one["node"]])
@@ -64,4 +69,5 @@ def main():
         print(f"{form}: {met} of {of} ({100 * met / max(of, 1):.1f} %); missed: {', '.join(missed) or 'none'}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -45,7 +45,10 @@ fn everybody_begins_waits_and_ends_in_the_simulator_where_the_scenario_says() {
             assert_eq!(code, 0, "{name}: {said:#}");
             let proposal = json(&at.join(format!("bundle-{name}/details/proposal.json")));
             let people = proposal["humans"].as_array().unwrap().len();
-            assert_eq!((said["people"].as_u64(), said["wanted"].as_u64()), (Some(people as u64 + 1), said["people"].as_u64()));
+            assert_eq!(
+                (said["people"].as_u64(), said["wanted"].as_u64()),
+                (Some(people as u64 + 1), said["people"].as_u64())
+            );
             let ends = ends(at, name);
             for person in said["tracks"].as_array().unwrap() {
                 let who = person["name"].as_str().unwrap();
@@ -54,7 +57,10 @@ fn everybody_begins_waits_and_ends_in_the_simulator_where_the_scenario_says() {
                 let off = off.fold(f64::INFINITY, f64::min);
                 assert!(off <= 1.0, "{name}: {who} ends {off} m from the end of their path and of their run");
                 for wait in person["waits"].as_array().unwrap() {
-                    assert!(wait["stayed_s"].as_f64().unwrap() >= wait["wanted_s"].as_f64().unwrap() - 0.1, "{name}: {wait}");
+                    assert!(
+                        wait["stayed_s"].as_f64().unwrap() >= wait["wanted_s"].as_f64().unwrap() - 0.1,
+                        "{name}: {wait}"
+                    );
                     waits += 1;
                 }
             }

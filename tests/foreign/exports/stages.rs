@@ -47,14 +47,21 @@ fn the_validators_of_usd_find_nothing_and_walls_and_people_are_where_they_were()
         let (is_read, said) = read(&python, at, STAGES, &args);
         assert!(is_read, "{name}: {said}");
         let found: Value = serde_json::from_str(&said).unwrap();
-        assert!(found["validators"].as_u64().unwrap() >= 20 && found["faults"] == serde_json::json!([]), "{name}: {found}");
+        assert!(
+            found["validators"].as_u64().unwrap() >= 20 && found["faults"] == serde_json::json!([]),
+            "{name}: {found}"
+        );
         assert!(found["walls"].as_u64().unwrap() > 10 && found["wrong"] == 0, "{name}: {found}");
         let (positions, off) = (found["positions"].as_u64().unwrap(), found["off"].as_f64().unwrap());
         // A millimeter, and half a digit of the table.
         assert!(positions > 100 && off <= 0.001_1, "{name}: {found}");
         // The same reader notices what is wrong.
         let good = std::fs::read_to_string(at.join(&stage)).unwrap();
-        for (from, to) in [("    metersPerUnit = 1\n", ""), ("def PhysicsScene", "def PhysicsScen"), ("(-0.5, -0.5, -0.5)", "(-0.5, -0.5")] {
+        for (from, to) in [
+            ("    metersPerUnit = 1\n", ""),
+            ("def PhysicsScene", "def PhysicsScen"),
+            ("(-0.5, -0.5, -0.5)", "(-0.5, -0.5"),
+        ] {
             std::fs::write(at.join(&stage), good.replacen(from, to, 1)).unwrap();
             let (is_read, said) = read(&python, at, STAGES, &args);
             assert!(!is_read || !said.contains("\"faults\": []"), "`{from}` is not missed: {said}");
@@ -87,7 +94,9 @@ fn program() -> Result<PathBuf, String> {
 #[test]
 fn a_reader_of_parquet_finds_the_positions_of_the_run() {
     static PROGRAM: OnceLock<Result<PathBuf, String>> = OnceLock::new();
-    let Some(python) = skip::installed(python("table-readers", &TABLE_READERS, "import pyarrow.parquet")) else { return };
+    let Some(python) = skip::installed(python("table-readers", &TABLE_READERS, "import pyarrow.parquet")) else {
+        return;
+    };
     let Some(program) = skip::installed(PROGRAM.get_or_init(program).clone()) else { return };
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

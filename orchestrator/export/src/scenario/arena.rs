@@ -193,7 +193,8 @@ fn world_5(scenario: &Scenario, losses: &mut Losses) -> String {
     let placed = |corner: (usize, usize)| grid.world_from_pixel(corner.0 as f64, corner.1 as f64);
     let pair = |at: Point| format!("[{}, {}]", real(at.x), real(at.y));
     let point = |at: Point| format!("{{x: {}, y: {}}}", real(at.x), real(at.y));
-    let corners = [(0, grid.height), (grid.width, grid.height), (grid.width, 0), (0, 0)].map(|corner| pair(placed(corner)));
+    let corners =
+        [(0, grid.height), (grid.width, grid.height), (grid.width, 0), (0, 0)].map(|corner| pair(placed(corner)));
     let told = [&proposal.title, &proposal.description, &proposal.robot.task, &proposal.robot.expected_behavior];
     let told = told.into_iter().chain(proposal.humans.iter().map(|human| &human.behavior));
     let told: Vec<&str> = told.map(String::as_str).filter(|text| !text.is_empty()).collect();
@@ -220,7 +221,11 @@ fn world_5(scenario: &Scenario, losses: &mut Losses) -> String {
         text.push_str(&format!("  - {{name: {name}, start: {from}, end: {to}, kind: sliding, height: 2.0}}\n"));
         if door.kind == DoorKind::Elevator {
             let at = format!("location.json door `{}`", door.id);
-            losses.note("elevator machinery", at, "the landing door is written as a door; no version reads cars everywhere");
+            losses.note(
+                "elevator machinery",
+                at,
+                "the landing door is written as a door; no version reads cars everywhere",
+            );
         }
     }
     text.push_str("  entities: {static: [], dynamic: []}\n");

@@ -46,7 +46,8 @@ macro_rules! lacks {
     };
 }
 
-const CHECKED: &str = "no schema of its files can be had; our test holds their keys, and the stage is that of `usda-1.0`";
+const CHECKED: &str =
+    "no schema of its files can be had; our test holds their keys, and the stage is that of `usda-1.0`";
 
 pub(super) const PEOPLE_5_1: Format = Format {
     name: "isaac-people-5.1",
@@ -89,7 +90,11 @@ fn people(scenario: &Scenario, losses: &mut Losses) -> Result<Vec<Walker>, Unusa
     let people: Vec<Walker> = people.into_iter().filter(|walker| walker.agent != AgentId::Robot).collect();
     for walker in &people {
         let at = || format!("paths.json {}", walker.agent);
-        losses.note("starts of people", at(), "Isaac puts characters anywhere on its mesh; they go to their start first");
+        losses.note(
+            "starts of people",
+            at(),
+            "Isaac puts characters anywhere on its mesh; they go to their start first",
+        );
         if walker.from_s > 0.0 {
             losses.note("absence of people", at(), "everybody is there from the beginning");
         }

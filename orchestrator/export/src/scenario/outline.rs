@@ -50,7 +50,8 @@ impl Floor {
                 return Some((*at, own));
             }
             let near = self.near(grid, at, AWAY_M).into_iter().filter(|(column, row)| self.has(grid, *column, *row));
-            let near = near.map(|(column, row)| grid.center_of(column, row)).filter(|place| (place - at).norm() <= AWAY_M);
+            let near =
+                near.map(|(column, row)| grid.center_of(column, row)).filter(|place| (place - at).norm() <= AWAY_M);
             let roomy = near.map(|place| (place, self.room(grid, &place, room_m))).filter(|(_, room)| *room >= wanted);
             let nearest = roomy.min_by(|one, other| (one.0 - at).norm().total_cmp(&(other.0 - at).norm()));
             if nearest.is_some() {

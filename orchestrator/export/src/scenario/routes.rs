@@ -20,7 +20,8 @@ const RADIUS_M: f64 = 0.3;
 const PACE_MPS: f64 = 1.2;
 
 /// Why the tracks of people are not in such a format.
-pub(crate) const SIMULATED: &str = "people are simulated anew; the format has where they begin, their ways and their waits";
+pub(crate) const SIMULATED: &str =
+    "people are simulated anew; the format has where they begin, their ways and their waits";
 
 /// A part of a way: a place, and how long to stay there.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -92,7 +92,10 @@ fn an_id_above_the_range_of_a_format_is_refused_and_others_keep_it() {
                 assert!(is_told || has_names, "{} loses the number", format.name);
             }
             Err(why) => {
-                assert!(why.to_string().contains("human_4000000000") && why.to_string().contains("2147483647"), "{why}");
+                assert!(
+                    why.to_string().contains("human_4000000000") && why.to_string().contains("2147483647"),
+                    "{why}"
+                );
                 refused.push(format.name);
             }
         }
@@ -112,7 +115,8 @@ fn ten_thousand_people_are_written_or_refused_with_their_number() {
     let many = 10_000;
     let human = scenario.proposal.humans[0].clone();
     let ids: Vec<HumanId> = (1..=many).map(HumanId::new).collect();
-    scenario.proposal.humans = ids.iter().map(|id| socrates_model::HumanProposal { id: *id, group: None, ..human.clone() }).collect();
+    scenario.proposal.humans =
+        ids.iter().map(|id| socrates_model::HumanProposal { id: *id, group: None, ..human.clone() }).collect();
     scenario.proposal.groups.clear();
     let info = run.header.agents[1].clone();
     run.header.agents.truncate(1);

@@ -87,9 +87,12 @@ fn people_of_arena_begin_where_they_did_and_walk_their_paths() {
     for (format, value, pose) in [("arena-3", &three, "pos"), ("arena-5", &five, "pose")] {
         let people = value["obstacles"]["dynamic"].as_array().unwrap();
         assert_eq!(people.len(), 2, "{format}");
-        assert!(people.iter().chain(value["robots"].as_array().unwrap()).all(|one| {
-            ["pos", "pose", "start", "goal", "waypoints"].iter().all(|key| one.get(key).is_none_or(is_real))
-        }), "{format}: a whole number among the places");
+        assert!(
+            people.iter().chain(value["robots"].as_array().unwrap()).all(|one| {
+                ["pos", "pose", "start", "goal", "waypoints"].iter().all(|key| one.get(key).is_none_or(is_real))
+            }),
+            "{format}: a whole number among the places"
+        );
         let one = &people[0];
         assert_eq!((one[pose][0].as_f64(), one[pose][1].as_f64()), (Some(9.0), Some(2.5)), "{format}");
         let last = one["waypoints"].as_array().unwrap().last().unwrap();
@@ -126,7 +129,10 @@ fn a_world_of_arena_5_has_every_door_and_walls_along_the_cells() {
         for end in ["start", "end"] {
             let at = Point::new(wall[end]["x"].as_f64().unwrap(), wall[end]["y"].as_f64().unwrap());
             let (px, py) = grid.pixel_from_world(&at);
-            assert!((px - px.round()).abs() < 1e-3 && (py - py.round()).abs() < 1e-3, "{px} {py} is no corner of a cell");
+            assert!(
+                (px - px.round()).abs() < 1e-3 && (py - py.round()).abs() < 1e-3,
+                "{px} {py} is no corner of a cell"
+            );
         }
     }
 }
@@ -144,7 +150,9 @@ fn a_scenario_of_humansim_has_its_keys_and_everybody_with_their_goals() {
     assert_eq!(ids, [-1, 1, 2]);
     assert_eq!((agents[0]["kind"].as_i64(), agents[1]["agent_type"].as_str()), (Some(1), Some("adult")));
     for agent in agents {
-        assert!(is_real(&agent["spawn_pose"]) && is_real(&agent["goal_sequence"]) && is_real(&agent["desired_velocity"]));
+        assert!(
+            is_real(&agent["spawn_pose"]) && is_real(&agent["goal_sequence"]) && is_real(&agent["desired_velocity"])
+        );
         assert!(!agent["goal_sequence"].as_array().unwrap().is_empty());
     }
     assert!(value["walls"].as_array().unwrap().len() > 20);
@@ -159,7 +167,10 @@ fn people_of_isaac_have_ways_in_the_spelling_of_their_generation() {
     let second: Vec<&&str> = commands.iter().filter(|line| line.starts_with("Character_01 ")).collect();
     // Human 2 stands from 3 s to the end.
     let stood = (TICKS - 1 - COMES) as f64 / 100.0;
-    assert_eq!(second[1..3], [&"Character_01 GoTo 5.0 3.123457 0.0 _", &format!("Character_01 Idle {stood:?}").as_str()]);
+    assert_eq!(
+        second[1..3],
+        [&"Character_01 GoTo 5.0 3.123457 0.0 _", &format!("Character_01 Idle {stood:?}").as_str()]
+    );
     let config = &yaml(&old, "_agents.yaml")["isaacsim.replicator.agent"];
     assert_eq!((config["version"].as_str(), config["character"]["num"].as_u64()), (Some("0.7.0"), Some(2)));
     assert_eq!(config["global"]["simulation_length"], 600);
@@ -168,7 +179,10 @@ fn people_of_isaac_have_ways_in_the_spelling_of_their_generation() {
         let config = &yaml(&package, "_agents.yaml")["isaacsim.replicator.agent"];
         assert_eq!((config["version"].as_str(), config["simulation_duration"].as_f64()), (Some(version), Some(20.0)));
         let stage = config["environment"]["base_stage_asset_path"].as_str().unwrap();
-        assert!(text(&package, stage).starts_with("#usda 1.0\n") && !text(&package, stage).contains("human_1"), "{format}");
+        assert!(
+            text(&package, stage).starts_with("#usda 1.0\n") && !text(&package, stage).contains("human_1"),
+            "{format}"
+        );
         let groups = config["character"]["groups"].as_object().unwrap();
         assert_eq!(groups.keys().collect::<Vec<_>>(), ["human_1", "human_2"]);
         let patrol = &groups["human_1"]["routines"][0]["patrol"];

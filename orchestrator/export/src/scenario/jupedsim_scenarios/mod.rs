@@ -99,14 +99,7 @@ struct Config<'a> {
 
 impl<'a> Config<'a> {
     fn new(grid: &'a Grid, floor: &'a Floor) -> Self {
-        Self {
-            grid,
-            floor,
-            starts: Map::new(),
-            stops: Map::new(),
-            exits: Map::new(),
-            journeys: Vec::new(),
-        }
+        Self { grid, floor, starts: Map::new(), stops: Map::new(), exits: Map::new(), journeys: Vec::new() }
     }
 
     fn value(self, name: &str, longest_s: f64) -> Value {
@@ -127,7 +120,11 @@ impl<'a> Config<'a> {
         let (start, room_m) = self.place(&walker.start.point(), across(walker.radius_m + START_M), losses, agent)?;
         let radius_m = micro(walker.radius_m.min(room_m / across(1.0) - START_M).max(START_M));
         if radius_m < walker.radius_m {
-            losses.note("radii beside walls", format!("recording: radius of {agent}"), "the body is as large as its start has room for");
+            losses.note(
+                "radii beside walls",
+                format!("recording: radius of {agent}"),
+                "the body is as large as its start has room for",
+            );
         }
         let mut parameters = json!({
             "number": 1,
