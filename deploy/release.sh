@@ -34,6 +34,26 @@ host=$(rustc -vV | sed -n 's/^host: //p')
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 [ -n "$version" ] || fail "Cargo.toml names no version"
 
+# Samples: a shipped scenario in every format of others, without its bundle, which holds times. They are the same for all targets, and
+# are made by a program of this machine with every feature; a binary that was given makes those that it writes itself.
+samples=$(mktemp -d)
+trap 'rm -rf "$samples"' EXIT
+if [ -n "$binary" ] && [ "${targets[0]}" = "$host" ]; then
+  maker=$(realpath "$binary")
+else
+  cargo build --release --locked -p socrates --features parquet
+  maker=$samples/socrates
+  cp "${CARGO_TARGET_DIR:-target}/release/socrates" "$maker"
+fi
+requests=$PWD/maps
+(
+  cd "$samples"
+  "$maker" run "$requests/office/scenarios/doorway.toml" --out doorway >&2 || fail "the sample was not made"
+  "$maker" export --formats | while read -r format _; do
+    "$maker" export doorway --to "$format" --out "samples/$format" >&2 || fail "no sample of \`$format\`"
+  done
+)
+
 # Every paper that the README links to comes along, at its place, so that no link is dead.
 papers=$(grep -oE '\]\([^)#: ]+' README.md | sed 's/^](//' | sort -u)
 mkdir -p "$out"
@@ -51,7 +71,7 @@ for target in "${targets[@]}"; do
   [ -f "$built" ] || fail "there is no binary \`$built\`"
   name=socrates-$version-$target
   stage=$(mktemp -d)
-  trap 'rm -rf "$stage"' EXIT
+  trap 'rm -rf "$stage" "$samples"' EXIT
   root=$stage/$name
   mkdir -p "$root/requests"
   install -m 755 "$built" "$root/socrates"
@@ -68,6 +88,7 @@ for target in "${targets[@]}"; do
   for request in maps/*/scenarios/*.toml; do
     install -m 644 "$request" "$root/requests/$(basename "$(dirname "$(dirname "$request")")")-$(basename "$request")"
   done
+  cp -r "$samples/samples" "$root/samples"
   # What is linked in, with its license.
   {
     echo "The binary contains these packages, each under its own license:"
@@ -78,6 +99,6 @@ for target in "${targets[@]}"; do
   tar --sort=name --owner=0 --group=0 --numeric-owner --mtime="@${SOURCE_DATE_EPOCH:-0}" -C "$stage" -cf - "$name" | gzip -n >"$out/$archive"
   (cd "$out" && sha256sum "$archive" >"$archive.sha256")
   rm -rf "$stage"
-  trap - EXIT
+  trap 'rm -rf "$samples"' EXIT
   echo "$out/$archive"
 done

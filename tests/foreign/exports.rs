@@ -1,5 +1,8 @@
 //! Exported scenarios in the hands of readers that others wrote. The column *parsed* of `docs/export.md` is what these tests hold.
 
+mod simulated;
+mod stages;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -27,6 +30,16 @@ const BAG_FORMATS: [&str; 1] = ["rosbag2-5"];
 /// Formats of worlds that are read by [`SDF_MAIN`].
 const WORLD_FORMATS: [&str; 1] = ["sdf-1.6"];
 
+/// Requests in three locations: with people who wait, who come later, and who walk.
+fn requests() -> Vec<(&'static str, String)> {
+    let shipped = |path: &str| std::fs::read_to_string(root().join("maps").join(path)).unwrap();
+    vec![
+        ("hall", WAREHOUSE.to_owned()),
+        ("doorway", shipped("office/scenarios/doorway.toml")),
+        ("elevator", shipped("hospital/scenarios/elevator.toml")),
+    ]
+}
+
 /// Exports a bundle into a folder named after the format.
 fn export(at: &Path, bundle: &str, format: &str) -> Value {
     let out = format!("out/{format}");
@@ -48,10 +61,10 @@ fn the_formats_that_the_page_calls_parsed_are_those_that_are_read_here() {
         let rows = page.lines().filter(|line| line.starts_with("| `") && line.contains(&format!(" | {word} | ")));
         rows.map(|row| row.split('`').nth(1).unwrap().to_owned()).collect()
     };
-    let read =
-        TRACK_FORMATS.map(|(format, _)| format).into_iter().chain(WORLD_FORMATS).chain(BAG_FORMATS).map(str::to_owned);
+    let tracks = TRACK_FORMATS.map(|(format, _)| format);
+    let read = tracks.into_iter().chain(WORLD_FORMATS).chain(BAG_FORMATS).chain(stages::FORMATS).map(str::to_owned);
     assert_eq!(of("parsed"), read.collect::<BTreeSet<String>>());
-    assert_eq!(of("run"), BTreeSet::new(), "no simulator of others runs in these tests");
+    assert_eq!(of("run"), simulated::FORMATS.map(str::to_owned).into_iter().collect::<BTreeSet<String>>());
 }
 
 #[test]

@@ -33,8 +33,19 @@ fn a_bundle_goes_out_in_every_format_with_the_same_bytes_again() {
     assert!(wrong.code == 2 && wrong.err.contains("several") && wrong.err.contains("hunav-1.1"), "{}", wrong.err);
     let wrong = socrates(at, "none", &["export", "bundle-hall", "--to", "dxf"]);
     assert!(wrong.code == 2 && wrong.err.contains("`dxf` is no format"), "{}", wrong.err);
-    let formats: Vec<&str> = wrong.err.split("choose one of: ").nth(1).unwrap().trim().split(", ").collect();
+    let listed = socrates(at, "listed", &["--format", "json", "export", "--formats"]).json();
+    let formats: Vec<&str> = listed.as_array().unwrap().iter().map(|format| format["name"].as_str().unwrap()).collect();
     assert!(formats.len() >= 6, "{formats:?}");
+    // Formats of the page that are not listed want a feature, and say so.
+    let page = std::fs::read_to_string(socrates_tests::root().join("docs/export.md")).unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| `")).map(|row| row.split('`').nth(1).unwrap());
+    let unlisted: Vec<&str> = rows.filter(|name| !formats.contains(name)).collect();
+    for format in &unlisted {
+        let told = socrates(at, format, &["export", "bundle-hall", "--to", format, "--out", "unlisted"]);
+        assert!(told.code == 2 && told.err.contains("--features"), "{format}: {}", told.err);
+        assert!(!at.join("unlisted").exists(), "{format} leaves files behind");
+    }
+    assert!(unlisted.len() <= 1, "{unlisted:?}");
     for format in &formats {
         let outs = ["one", "two"].map(|name| format!("{name} ö/{format}"));
         for out in &outs {
@@ -56,6 +67,41 @@ fn a_bundle_goes_out_in_every_format_with_the_same_bytes_again() {
     assert!(told.code == 2 && told.err.contains("no run `orca-7`") && told.err.contains("reference-1"), "{}", told.err);
     let told = socrates(at, "nowhere", &["export", "nowhere", "--to", "sdf"]);
     assert!(told.code == 2 && told.err.contains("`nowhere`"), "{}", told.err);
+}
+
+/// A bundle without one of its files, or with one of an older version, is refused by its name and leaves nothing behind.
+#[test]
+fn half_bundles_and_older_ones_are_refused_with_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let (made, _) = make(at, "halle ö", WAREHOUSE, &[]);
+    assert!(matches!(made.code, 0 | 3), "{}", made.err);
+    let details = at.join("bundle-halle ö/details");
+    let export = |name: &str| {
+        let told = socrates(at, name, &["export", "bundle-halle ö", "--to", "usda", "--out", "out"]);
+        (told.code, told.err)
+    };
+    for file in ["manifest.json", "location.json", "proposal.json", "paths.json", "behaviors.json"] {
+        let path = details.join(file);
+        let good = std::fs::read_to_string(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let (code, said) = export(&format!("without-{file}"));
+        assert!(code == 2 && said.contains(file), "without {file}: {code} {said}");
+        std::fs::write(&path, &good[..good.len() / 2]).unwrap();
+        let (code, said) = export(&format!("half-{file}"));
+        assert!(code == 2 && said.contains(file), "half of {file}: {code} {said}");
+        let mut old: serde_json::Value = serde_json::from_str(&good).unwrap();
+        if old.get("format").is_some() {
+            old["format"] = 0.into();
+            std::fs::write(&path, old.to_string()).unwrap();
+            let (code, said) = export(&format!("old-{file}"));
+            assert!(code == 2 && said.contains(file) && said.contains("format"), "older {file}: {code} {said}");
+        }
+        std::fs::write(&path, good).unwrap();
+        assert!(!at.join("out").exists(), "{file}");
+    }
+    let (code, said) = export("whole");
+    assert_eq!(code, 0, "{said}");
 }
 
 #[test]

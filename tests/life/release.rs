@@ -1,5 +1,6 @@
 //! A release runs where there is nothing else: no compiler, no Rust, no network, no settings.
 
+use std::collections::BTreeSet;
 use std::process::Command;
 
 use socrates_tests::program::run;
@@ -35,6 +36,17 @@ fn a_release_unpacked_into_an_empty_folder_shows_its_first_page() {
     for paper in ["README.md", "LICENSE", "socrates.toml.default", "THIRD-PARTY.txt", "requests/hospital-elevator.toml"]
     {
         assert!(home.join(paper).is_file(), "{paper} is missing");
+    }
+    // A sample of every format that the program writes, each with its list of losses.
+    let listed = run(PROGRAM, &["--format", "json", "export", "--formats"], folder.path(), "formats").unwrap().json();
+    let formats = listed.as_array().unwrap().iter().map(|format| format["name"].as_str().unwrap().to_owned());
+    let samples = std::fs::read_dir(home.join("samples")).unwrap();
+    let samples: BTreeSet<String> =
+        samples.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    assert_eq!(samples, formats.collect::<BTreeSet<String>>());
+    for sample in &samples {
+        let count = std::fs::read_dir(home.join("samples").join(sample)).unwrap().count();
+        assert!(count > 1 && home.join("samples").join(sample).join("not_carried.json").is_file(), "{sample}");
     }
     let size = std::fs::metadata(home.join("socrates")).unwrap().len();
     assert!((1_000_000..=LARGEST).contains(&size), "the program has {size} bytes");

@@ -34,7 +34,7 @@ pub struct SimulateOptions {
     pub robot: Option<String>,
     /// Who moves an agent: `2=orca`, `social-forces`, or `track`; may be repeated.
     pub model: Vec<String>,
-    /// Recorded tracks (CSV with `t,id,x,y`) of people who are replayed.
+    /// Recorded tracks (CSV with `t,id,x,y`) of people who are replayed; 0 is the robot where neither file nor `robot` has one.
     pub tracks: Option<PathBuf>,
     /// Folder of the behavior trees it names; default: beside it.
     pub trees: Option<PathBuf>,
@@ -71,7 +71,13 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
     inputs.profile = profile;
     inputs.seed = options.seed.unwrap_or(1);
     inputs.duration_s = options.duration;
-    inputs.robot = options.robot.as_deref().map(robot).transpose()?;
+    // Number 0 of a recording is the robot, unless the file has somebody of this number.
+    let replayed =
+        tracks.as_ref().and_then(|tracks| tracks.get(0)).filter(|_| agents.agents.iter().all(|agent| agent.id != 0));
+    inputs.robot = match &options.robot {
+        Some(text) => Some(robot(text)?),
+        None => replayed.cloned().map(RobotSpec::replaying),
+    };
     inputs.trees = &trees;
     inputs.models = options.model.iter().map(|text| model(text)).collect::<Result<BTreeMap<_, _>, _>>()?;
     let problems = socrates_hunav::check(&inputs);

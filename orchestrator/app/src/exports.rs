@@ -5,7 +5,7 @@ mod sqlite;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use socrates_export::scenario::{Bag, File, Format, Package, Scenario};
+use socrates_export::scenario::{Bag, Columns, Content, FORMATS, File, Format, Package, Scenario};
 use socrates_export::{Losses, Unusable};
 use socrates_model::Run;
 use socrates_stream::ros::BagPen;
@@ -34,12 +34,43 @@ pub struct ExportOptions {
     pub out: Option<PathBuf>,
 }
 
+/// Features that this program has, of those that formats need.
+const FEATURES: &[&str] = if cfg!(feature = "parquet") { &["parquet"] } else { &[] };
+
+/// The feature that a format needs and this program lacks.
+fn missing(format: &Format) -> Option<&'static str> {
+    format.feature.filter(|feature| !FEATURES.contains(feature))
+}
+
+/// Lists the formats that this program writes, a line each: name, and what it is.
+pub fn formats(talk: &Printer) {
+    let written: Vec<&Format> = FORMATS.iter().filter(|format| missing(format).is_none()).collect();
+    for format in &written {
+        talk.line(&format!("{:<24}{}", format.name, format.about));
+    }
+    let rows = written.iter().map(|format| {
+        let carried: Vec<&str> =
+            Content::ALL.into_iter().filter(|content| format.carries(*content)).map(Content::name).collect();
+        json!({
+            "name": format.name, "about": format.about, "carried": carried, "by_others": format.foreign.name(),
+            "checked_by": format.checked_by, "needs_run": format.needs_run,
+        })
+    });
+    talk.result(&Value::Array(rows.collect()));
+}
+
 /// Writes bundles in a format of others, and beside each the list of what that format cannot hold.
 ///
 /// # Errors
 /// A format that is none, or a bundle that cannot be exported; of a library all others are written first.
 pub fn export(talk: &Printer, options: &ExportOptions) -> Result<(), Complaint> {
     let format = Format::named(&options.format).map_err(|why| complaint(&why, None))?;
+    if let Some(feature) = missing(format) {
+        return Err(Complaint::input(
+            format!("cannot write `{}`: this program was built without the feature `{feature}`", format.name),
+            format!("build it with `cargo build --release -p socrates --features {feature}`"),
+        ));
+    }
     let bundles = bundles_in(std::slice::from_ref(&options.what))?;
     if let [only] = bundles.as_slice()
         && *only == options.what
@@ -113,6 +144,7 @@ fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Pa
             File::Text(text) => files::write(&path, text.as_bytes())?,
             File::Bytes(bytes) => files::write(&path, bytes)?,
             File::Database(database) => sqlite::write(&path, database)?,
+            File::Columns(table) => columns(&path, table)?,
             File::Bag(bag) => {
                 let problem = |why: String| Complaint::input(format!("{}: {why}", path.display()), "please report it");
                 files::write(&path, &bag_bytes(bag).map_err(problem)?)?;
@@ -121,6 +153,20 @@ fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Pa
     }
     files::write(&out.join(NOT_CARRIED), list(&package.losses, format).as_bytes())?;
     Ok((package, run))
+}
+
+/// Writes a table of Parquet.
+#[cfg(feature = "parquet")]
+fn columns(path: &Path, table: &Columns) -> Result<(), Complaint> {
+    // Makes the folder, and says what keeps a file from being written there.
+    files::write(path, b"")?;
+    crate::parquet_file::table(path, table)
+}
+
+#[cfg(not(feature = "parquet"))]
+fn columns(path: &Path, table: &Columns) -> Result<(), Complaint> {
+    let what = format!("cannot write `{}`: this program makes no table of `{}`", path.display(), table.name);
+    Err(Complaint::input(what, "build it with `cargo build --release -p socrates --features parquet`"))
 }
 
 /// The file of a bag.

@@ -1,6 +1,6 @@
-//! The table of runs as a Parquet file, for libraries too large for a spreadsheet. Behind the feature `parquet`.
+//! Tables as Parquet files: the runs of a library too large for a spreadsheet, and tracks of exported runs. Behind the feature `parquet`.
 //!
-//! The columns are those of `index.csv`, each optional: an empty cell has no value. Seeds and numbers of people are integers, figures are
+//! The columns of runs are those of `index.csv`, each optional: an empty cell has no value. Seeds and numbers of people are integers, figures are
 //! doubles, everything else is text. One row group, dictionaries where they help, nothing packed: the file needs no codec to be read.
 
 use std::fs::File;
@@ -13,6 +13,7 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
+use socrates_export::scenario::{Cells, Columns};
 use socrates_scoring::metrics::KEY_FIGURES;
 use socrates_stream::csv::Row;
 
@@ -22,33 +23,47 @@ use crate::index::DENSITY;
 /// Columns of whole numbers.
 const WHOLE: [&str; 2] = ["seed", "people"];
 
-/// What the cells of a column are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Text,
-    Whole,
-    Figure,
+/// The values of a column, those that are there.
+enum Values {
+    Text(Vec<ByteArray>),
+    /// Whole numbers without a sign, bit by bit.
+    Unsigned(Vec<i64>),
+    Signed(Vec<i64>),
+    Figure(Vec<f64>),
 }
 
-impl Kind {
-    fn of(column: &str) -> Self {
-        if WHOLE.contains(&column) {
-            Self::Whole
-        } else if KEY_FIGURES.contains(&column) || column == DENSITY {
-            Self::Figure
-        } else {
-            Self::Text
-        }
+/// A column: which of its rows have a value, and the values.
+struct Column<'a> {
+    name: &'a str,
+    there: Vec<i16>,
+    values: Values,
+}
+
+impl<'a> Column<'a> {
+    fn of<T>(name: &'a str, cells: &[Option<T>], values: Values) -> Self {
+        Self { name, there: cells.iter().map(|cell| i16::from(cell.is_some())).collect(), values }
     }
 
-    fn column(self, name: &str) -> Result<Type, ParquetError> {
-        let (physical, logical) = match self {
-            Self::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
-            Self::Whole => (Physical::INT64, Some(LogicalType::integer(64, false))),
-            Self::Figure => (Physical::DOUBLE, None),
+    fn field(&self) -> Result<Type, ParquetError> {
+        let (physical, logical) = match self.values {
+            Values::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            Values::Unsigned(_) => (Physical::INT64, Some(LogicalType::integer(64, false))),
+            Values::Signed(_) => (Physical::INT64, Some(LogicalType::integer(64, true))),
+            Values::Figure(_) => (Physical::DOUBLE, None),
         };
-        let column = Type::primitive_type_builder(name, physical);
+        let column = Type::primitive_type_builder(self.name, physical);
         column.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build()
+    }
+
+    fn fill(&self, column: &mut SerializedColumnWriter<'_>) -> Result<usize, ParquetError> {
+        let there = Some(self.there.as_slice());
+        match &self.values {
+            Values::Text(values) => column.typed::<ByteArrayType>().write_batch(values, there, None),
+            Values::Unsigned(values) | Values::Signed(values) => {
+                column.typed::<Int64Type>().write_batch(values, there, None)
+            }
+            Values::Figure(values) => column.typed::<DoubleType>().write_batch(values, there, None),
+        }
     }
 }
 
@@ -57,51 +72,60 @@ impl Kind {
 /// # Errors
 /// A file that cannot be written, or a cell of a column of numbers that is none.
 pub(crate) fn write(out: &Path, columns: &[(usize, &str)], rows: &[&Row]) -> Result<(), Complaint> {
+    let column = |(at, name): &(usize, &'_ str)| {
+        let cells: Vec<Option<&str>> = rows.iter().map(|row| row.cell(*at).filter(|cell| !cell.is_empty())).collect();
+        let values = if WHOLE.contains(name) {
+            Values::Unsigned(numbers::<u64>(name, &cells, rows)?.into_iter().map(u64::cast_signed).collect())
+        } else if KEY_FIGURES.contains(name) || *name == DENSITY {
+            Values::Figure(numbers::<f64>(name, &cells, rows)?)
+        } else {
+            Values::Text(cells.iter().flatten().map(|cell| ByteArray::from(*cell)).collect())
+        };
+        Ok((cells, values))
+    };
+    let made: Result<Vec<_>, Complaint> = columns.iter().map(column).collect();
+    let made = made?;
+    let columns = columns.iter().zip(made).map(|((_, name), (cells, values))| Column::of(name, &cells, values));
+    put(out, "runs", &columns.collect::<Vec<_>>())
+}
+
+/// Writes a table of an exporter; the same table gives the same bytes.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(crate) fn table(out: &Path, table: &Columns) -> Result<(), Complaint> {
+    let column = |(name, cells): &'_ (&'static str, Cells)| match cells {
+        Cells::Whole(values) => Column::of(name, values, Values::Signed(values.iter().flatten().copied().collect())),
+        Cells::Real(values) => Column::of(name, values, Values::Figure(values.iter().flatten().copied().collect())),
+        Cells::Text(values) => {
+            let texts = values.iter().flatten().map(|text| ByteArray::from(text.as_str())).collect();
+            Column::of(name, values, Values::Text(texts))
+        }
+    };
+    put(out, table.name, &table.columns.iter().map(column).collect::<Vec<_>>())
+}
+
+fn put(out: &Path, name: &str, columns: &[Column<'_>]) -> Result<(), Complaint> {
     let cannot = |why: String| {
         Complaint::input(format!("cannot write `{}`: {why}", out.display()), "--out chooses another place")
     };
     let fields: Result<Vec<Arc<Type>>, ParquetError> =
-        columns.iter().map(|(_, name)| Kind::of(name).column(name).map(Arc::new)).collect();
-    let schema = fields.and_then(|fields| Type::group_type_builder("runs").with_fields(fields).build());
+        columns.iter().map(|column| column.field().map(Arc::new)).collect();
+    let schema = fields.and_then(|fields| Type::group_type_builder(name).with_fields(fields).build());
     let schema = Arc::new(schema.map_err(|why| cannot(why.to_string()))?);
     let file = File::create(out).map_err(|why| cannot(why.to_string()))?;
     let properties = Arc::new(WriterProperties::builder().build());
     let mut writer = SerializedFileWriter::new(file, schema, properties).map_err(|why| cannot(why.to_string()))?;
     let mut group = writer.next_row_group().map_err(|why| cannot(why.to_string()))?;
-    for (at, name) in columns {
+    for one in columns {
         let column = group.next_column().map_err(|why| cannot(why.to_string()))?;
-        let mut column = column.ok_or_else(|| cannot(format!("no room for `{name}`")))?;
-        let cells: Vec<Option<&str>> = rows.iter().map(|row| row.cell(*at).filter(|cell| !cell.is_empty())).collect();
-        filled(&mut column, name, &cells, rows)?.map_err(|why| cannot(why.to_string()))?;
+        let mut column = column.ok_or_else(|| cannot(format!("no room for `{}`", one.name)))?;
+        one.fill(&mut column).map_err(|why| cannot(why.to_string()))?;
         column.close().map_err(|why| cannot(why.to_string()))?;
     }
     group.close().map_err(|why| cannot(why.to_string()))?;
     writer.close().map_err(|why| cannot(why.to_string()))?;
     Ok(())
-}
-
-/// Fills a column.
-fn filled(
-    column: &mut SerializedColumnWriter<'_>,
-    name: &str,
-    cells: &[Option<&str>],
-    rows: &[&Row],
-) -> Result<Result<usize, ParquetError>, Complaint> {
-    let there: Vec<i16> = cells.iter().map(|cell| i16::from(cell.is_some())).collect();
-    Ok(match Kind::of(name) {
-        Kind::Text => {
-            let values: Vec<ByteArray> = cells.iter().flatten().map(|cell| ByteArray::from(*cell)).collect();
-            column.typed::<ByteArrayType>().write_batch(&values, Some(&there), None)
-        }
-        Kind::Whole => {
-            let values: Vec<i64> = numbers::<u64>(name, cells, rows)?.into_iter().map(u64::cast_signed).collect();
-            column.typed::<Int64Type>().write_batch(&values, Some(&there), None)
-        }
-        Kind::Figure => {
-            let values = numbers::<f64>(name, cells, rows)?;
-            column.typed::<DoubleType>().write_batch(&values, Some(&there), None)
-        }
-    })
 }
 
 fn numbers<T: std::str::FromStr>(name: &str, cells: &[Option<&str>], rows: &[&Row]) -> Result<Vec<T>, Complaint> {
@@ -148,6 +172,32 @@ mod tests {
         assert_eq!(field(1, "request"), Field::Str("a, b".to_owned()));
         assert_eq!(field(1, "seed"), Field::ULong(u64::MAX), "no digit of a seed is lost");
         assert_eq!((field(1, "human_distance_min"), field(1, "people")), (Field::Null, Field::Null));
+    }
+
+    #[test]
+    fn a_table_of_an_exporter_is_read_back_and_has_the_same_bytes_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("tracks.parquet");
+        let columns = vec![
+            ("tick", Cells::Whole(vec![Some(-1), None])),
+            ("x_m", Cells::Real(vec![Some(0.25), Some(1e-6)])),
+            ("leaf", Cells::Text(vec![None, Some("Büro".to_owned())])),
+        ];
+        let tracks = Columns { name: "tracks", columns };
+        table(&out, &tracks).unwrap();
+        let bytes = std::fs::read(&out).unwrap();
+        table(&out, &tracks).unwrap();
+        assert_eq!(std::fs::read(&out).unwrap(), bytes);
+        let reader = SerializedFileReader::new(File::open(&out).unwrap()).unwrap();
+        let rows: Vec<Vec<Field>> = reader
+            .get_row_iter(None)
+            .unwrap()
+            .map(|row| row.unwrap().get_column_iter().map(|(_, field)| field.clone()).collect())
+            .collect();
+        assert_eq!(rows[0], [Field::Long(-1), Field::Double(0.25), Field::Null]);
+        assert_eq!(rows[1], [Field::Null, Field::Double(1e-6), Field::Str("Büro".to_owned())]);
+        let told = table(folder.path(), &tracks).unwrap_err();
+        assert!(told.what.contains("cannot write"), "{}", told.what);
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub(crate) struct Simulate {
     /// Agents file: who moves an agent: `2=orca`, `social-forces`, or `track`; may be repeated.
     #[arg(long, value_name = "ID=MODEL")]
     model: Vec<String>,
-    /// Agents file: recorded tracks (CSV with `t,id,x,y`) of people who are replayed.
+    /// Agents file: recorded tracks (CSV with `t,id,x,y`) of people who are replayed; without `--robot`, 0 is the robot.
     #[arg(long)]
     tracks: Option<PathBuf>,
     /// Agents file: folder of the behavior trees it names; default: beside it.

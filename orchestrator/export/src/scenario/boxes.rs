@@ -1,4 +1,4 @@
-//! Occupied cells of a map as few boxes, in the map frame.
+//! Cells of a map as few boxes, in the map frame.
 
 use socrates_model::{Cell, Grid, Point};
 
@@ -13,9 +13,9 @@ pub(crate) struct Block {
     pub(crate) across_m: f64,
 }
 
-/// Boxes that cover the occupied cells, each cell once: runs of a row, joined with the same runs below.
+/// Boxes that cover the cells of a kind, each cell once: runs of a row, joined with the same runs below.
 /// No side is longer than `longest_m`, but a box has at least one cell.
-pub(crate) fn blocks(grid: &Grid, longest_m: f64) -> Vec<Block> {
+pub(crate) fn blocks(grid: &Grid, kind: Cell, longest_m: f64) -> Vec<Block> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to the size of the map")]
     let longest = ((longest_m / grid.resolution_m + 1e-9).floor().max(1.0) as usize).min(grid.width.max(grid.height));
     let mut covered = vec![false; grid.cells.len()];
@@ -25,7 +25,7 @@ pub(crate) fn blocks(grid: &Grid, longest_m: f64) -> Vec<Block> {
         while column < grid.width {
             let is_open = |covered: &[bool], column: usize, row: usize| {
                 row < grid.height
-                    && grid.at(column, row) == Cell::Occupied
+                    && grid.at(column, row) == kind
                     && !covered.get(row * grid.width + column).copied().unwrap_or(true)
             };
             if !is_open(&covered, column, row) {
@@ -72,7 +72,7 @@ mod tests {
     fn every_occupied_cell_is_covered_once() {
         let grid = grid(&["####.#", "##...#", "##.#.#", "......", "######"]);
         for (longest_m, count) in [(100.0, 5), (1.0, 9), (0.1, 18)] {
-            let blocks = blocks(&grid, longest_m);
+            let blocks = blocks(&grid, Cell::Occupied, longest_m);
             assert_eq!(blocks.len(), count, "{longest_m}: {blocks:?}");
             let longest = blocks.iter().map(|block| block.along_m.max(block.across_m)).fold(0.0, f64::max);
             assert!(longest <= longest_m.max(0.5) + 1e-9);

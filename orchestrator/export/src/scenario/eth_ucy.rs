@@ -22,6 +22,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `numpy` (`loadtxt`, as the loaders of the data sets read it)",
     needs_run: true,
+    feature: None,
     lacks: LACKS,
     write,
 };

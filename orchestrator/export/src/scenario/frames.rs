@@ -35,6 +35,20 @@ pub(crate) const fn number(agent: AgentId) -> u32 {
     }
 }
 
+/// Refuses ids that messages of ROS cannot hold.
+///
+/// # Errors
+/// An agent whose number is above [`i32::MAX`].
+pub(crate) fn small_ids(agents: impl Iterator<Item = AgentId>) -> Result<(), Unusable> {
+    match agents.into_iter().find(|agent| i32::try_from(number(*agent)).is_err()) {
+        None => Ok(()),
+        Some(agent) => {
+            let problem = format!("`{agent}` is above {}, the largest id of a message of ROS", i32::MAX);
+            Err(Unusable::new("proposal.json humans", problem, "number people from 1, or choose a format of tracks"))
+        }
+    }
+}
+
 /// Those who are at a place at one time.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample<'a> {

@@ -56,6 +56,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `jupedsim` 1.4.2 and `pedpy` 1.5.1",
     needs_run: true,
+    feature: None,
     lacks: tracks_lack!(
         [],
         LACKS_POSITIONS,

@@ -6,19 +6,26 @@
 //!
 //! Conventions that several formats share (numbers, times, names) stand in `frames.rs`.
 
+mod arena;
 mod boxes;
 mod content;
 mod eth_ucy;
 mod frames;
+mod humansim;
 mod hunav;
+mod isaac;
 mod jupedsim;
+mod jupedsim_scenarios;
 mod map_files;
 mod outline;
+mod parquet;
 mod pedpy;
 mod rosbag;
+mod routes;
 mod sdf;
 mod socnav3;
 mod trajnet;
+mod usd;
 
 use std::collections::BTreeMap;
 
@@ -26,6 +33,7 @@ use socrates_model::{AgentId, Behaviors, Location, Paths, Proposal, Recording};
 
 pub use self::content::Content;
 pub use self::jupedsim::{Database, Table, Value};
+pub use self::parquet::{Cells, Columns};
 pub use self::rosbag::{Bag, Channel, Message};
 use crate::graph::Unusable;
 use crate::not_carried::Losses;
@@ -58,6 +66,8 @@ pub enum File {
     Bytes(Vec<u8>),
     /// Tables of a database of SQLite, which the shell writes.
     Database(Database),
+    /// Columns of a table, which the shell writes as Parquet.
+    Columns(Columns),
     /// Messages of a bag of ROS 2, which the shell writes as MCAP.
     Bag(Bag),
 }
@@ -112,6 +122,8 @@ pub struct Format {
     pub checked_by: &'static str,
     /// Whether it cannot be written without a run.
     pub needs_run: bool,
+    /// Cargo feature of the program without which its files cannot be written; none for the formats that every program writes.
+    pub feature: Option<&'static str>,
     /// Kinds of content that it cannot hold, each with the reason; it holds every other kind.
     pub lacks: &'static [(Content, &'static str)],
     /// Writes the files; notes what is lost beyond `lacks`.
@@ -124,13 +136,22 @@ pub const FORMATS: &[Format] = &[
     eth_ucy::FORMAT,
     pedpy::FORMAT,
     jupedsim::FORMAT,
+    jupedsim_scenarios::FORMAT,
     socnav3::FORMAT,
+    parquet::FORMAT,
     sdf::FORMAT,
+    usd::FORMAT,
+    isaac::PEOPLE_5_1,
+    isaac::PEOPLE_6_0,
+    isaac::PEOPLE_6_1,
     rosbag::FORMAT,
     hunav::HUNAV_1_0,
     hunav::HUNAV_1_1,
     hunav::HUNAV_2_0,
     hunav::HUNAV_FORK,
+    arena::ARENA_3,
+    arena::ARENA_5,
+    humansim::FORMAT,
 ];
 
 impl Scenario {

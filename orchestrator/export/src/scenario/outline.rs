@@ -9,11 +9,18 @@ use crate::graph::Unusable;
 use crate::not_carried::Losses;
 use crate::outline::{EXACT, outlines};
 
+/// Largest distance by which a place is moved to where there is room, m.
+const AWAY_M: f64 = 2.0;
+/// Least floor around a place, m.
+const LEAST_ROOM_M: f64 = 0.1;
+
 /// The floor that hangs together, in the map frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Floor {
     /// Outline and holes, each closed by its first corner again.
     pub(crate) rings: Vec<Vec<Point>>,
+    /// Whether each cell of the map belongs to it, row by row.
+    pub(crate) cells: Vec<bool>,
 }
 
 impl Floor {
@@ -31,6 +38,63 @@ impl Floor {
         }
         text.push(')');
         text
+    }
+
+    /// The nearest place with this much floor around it, at most [`AWAY_M`] away, m; where there is none, with half as much, down to
+    /// [`LEAST_ROOM_M`]. Beside it how much floor there is around it, at most what was wanted, m.
+    pub(crate) fn spot(&self, grid: &Grid, at: &Point, room_m: f64) -> Option<(Point, f64)> {
+        let mut wanted = room_m;
+        while wanted >= LEAST_ROOM_M {
+            let own = self.room(grid, at, room_m);
+            if own >= wanted {
+                return Some((*at, own));
+            }
+            let near = self.near(grid, at, AWAY_M).into_iter().filter(|(column, row)| self.has(grid, *column, *row));
+            let near =
+                near.map(|(column, row)| grid.center_of(column, row)).filter(|place| (place - at).norm() <= AWAY_M);
+            let roomy = near.map(|place| (place, self.room(grid, &place, room_m))).filter(|(_, room)| *room >= wanted);
+            let nearest = roomy.min_by(|one, other| (one.0 - at).norm().total_cmp(&(other.0 - at).norm()));
+            if nearest.is_some() {
+                return nearest;
+            }
+            wanted *= 0.5;
+        }
+        None
+    }
+
+    /// Distance from a place to what is no floor, at most `most_m`, m.
+    fn room(&self, grid: &Grid, at: &Point, most_m: f64) -> f64 {
+        let (px, py) = grid.pixel_from_world(at);
+        let off = |pixel: f64, cell: usize| {
+            #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
+            let low = cell as f64;
+            (low - pixel).max(pixel - low - 1.0).max(0.0)
+        };
+        if !grid.cell_of(at).is_some_and(|(column, row)| self.has(grid, column, row)) {
+            return 0.0;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
+        let (width, height) = (grid.width as f64, grid.height as f64);
+        // The rim of the map bounds the floor as walls do.
+        let rim = px.min(py).min(width - px).min(height - py).max(0.0) * grid.resolution_m;
+        let near = self.near(grid, at, most_m).into_iter().filter(|(column, row)| !self.has(grid, *column, *row));
+        let off_m = near.map(|(column, row)| off(px, column).hypot(off(py, row)) * grid.resolution_m);
+        off_m.fold(rim.min(most_m), f64::min)
+    }
+
+    fn has(&self, grid: &Grid, column: usize, row: usize) -> bool {
+        self.cells.get(row * grid.width + column).copied().unwrap_or_default()
+    }
+
+    /// Cells of the map around a place, as a square.
+    fn near(&self, grid: &Grid, at: &Point, far_m: f64) -> Vec<(usize, usize)> {
+        let (px, py) = grid.pixel_from_world(at);
+        let reach = far_m / grid.resolution_m + 1.0;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "cut to the size of the map")]
+        let cut = |pixel: f64, side: usize| (pixel.max(0.0) as usize).min(side);
+        let columns = cut(px - reach, grid.width)..cut(px + reach + 1.0, grid.width);
+        let rows = cut(py - reach, grid.height)..cut(py + reach + 1.0, grid.height);
+        rows.flat_map(|row| columns.clone().map(move |column| (column, row))).collect()
     }
 }
 
@@ -80,7 +144,7 @@ pub(crate) fn walkable(grid: &Grid, losses: &mut Losses) -> Result<Floor, Unusab
     #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
     let placed = |corner: &(usize, usize)| grid.world_from_pixel(corner.0 as f64, corner.1 as f64);
     let rings = rings.iter().map(|ring| ring.iter().chain(ring.first()).map(placed).collect());
-    Ok(Floor { rings: rings.collect() })
+    Ok(Floor { rings: rings.collect(), cells: free })
 }
 
 /// The cells of the largest part that hangs together over sides of cells.
@@ -190,6 +254,20 @@ mod tests {
     fn a_turned_map_turns_its_floor() {
         let floor = walkable(&grid(&["."], Pose::new(0.0, 0.0, std::f64::consts::FRAC_PI_2)), &mut Losses::default());
         assert_eq!(floor.unwrap().polygon(), "POLYGON ((-0.5 0.0, -0.5 0.5, 0.0 0.5, 0.0 0.0, -0.5 0.0))");
+    }
+
+    #[test]
+    fn a_place_beside_a_wall_is_moved_to_where_there_is_room() {
+        let grid = grid(&["######", "#....#", "#....#", "#....#", "#....#", "######"], Pose::new(0.0, 0.0, 0.0));
+        let floor = walkable(&grid, &mut Losses::default()).unwrap();
+        let (at, room) = floor.spot(&grid, &Point::new(1.5, 1.4), 0.6).unwrap();
+        assert!((at - Point::new(1.5, 1.4)).norm() < 1e-9 && (room - 0.6).abs() < 1e-9, "{at} {room}");
+        let (at, room) = floor.spot(&grid, &Point::new(0.55, 1.3), 0.6).unwrap();
+        assert!((at - Point::new(1.25, 1.25)).norm() < 1e-9 && (room - 0.6).abs() < 1e-9, "{at} {room}");
+        // Nothing has 3 m around it: half as much is taken, and half of that.
+        let (at, room) = floor.spot(&grid, &Point::new(1.5, 1.5), 3.0).unwrap();
+        assert!((at - Point::new(1.5, 1.5)).norm() < 1e-9 && (room - 1.0).abs() < 1e-9, "{at} {room}");
+        assert_eq!(floor.spot(&grid, &Point::new(9.0, 9.0), 0.3), None);
     }
 
     #[test]

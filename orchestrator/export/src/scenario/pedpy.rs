@@ -19,6 +19,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `pedpy` 1.5.1",
     needs_run: true,
+    feature: None,
     lacks: tracks_lack!(
         [(Content::Headings, POSITIONS)],
         POSITIONS,

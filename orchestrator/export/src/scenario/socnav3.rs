@@ -26,6 +26,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Neither,
     checked_by: "no reader in a package index; our test holds the rules of its published schema",
     needs_run: true,
+    feature: None,
     lacks: &[
         (Content::Gestures, NO_PLACE),
         (Content::Leaves, NO_PLACE),

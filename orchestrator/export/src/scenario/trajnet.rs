@@ -36,6 +36,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `trajnetplusplustools` 0.3.0",
     needs_run: true,
+    feature: None,
     lacks: LACKS,
     write,
 };

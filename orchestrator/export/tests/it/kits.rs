@@ -26,7 +26,7 @@ fn texts(package: &Package) -> BTreeMap<&str, &str> {
     for (name, file) in &package.files {
         match file {
             File::Text(text) => _ = texts.insert(name.as_str(), text.as_str()),
-            File::Bytes(_) | File::Database(_) | File::Bag(_) => {}
+            File::Bytes(_) | File::Database(_) | File::Columns(_) | File::Bag(_) => {}
         }
     }
     texts

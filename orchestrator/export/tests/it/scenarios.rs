@@ -211,7 +211,8 @@ fn people_who_are_not_there_have_no_rows() {
     let scenario = without(&whole(), Content::RobotTrack);
     let package = Format::named("pedpy").unwrap().export(&scenario).unwrap();
     assert!(!text(&package, ".txt").lines().any(|line| line.starts_with("0\t")));
-    assert!(scenario.recording.unwrap().header.agents.iter().all(|info| info.agent != AgentId::Robot));
+    let run = scenario.recording.unwrap();
+    assert!(run.track(AgentId::Robot).all(|state| !state.is_there(run.header.absent())));
 }
 
 /// The table of the page is that of the program.

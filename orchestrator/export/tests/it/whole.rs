@@ -109,7 +109,7 @@ pub(crate) fn whole() -> Scenario {
         proposal: serde_json::from_str(PROPOSAL).unwrap(),
         paths: serde_json::from_value(paths).unwrap(),
         behaviors: serde_json::from_value(behaviors).unwrap(),
-        robot_radius_m: 0.25,
+        robot_radius_m: 0.2,
         recording: Some(recording()),
     }
 }
@@ -127,7 +127,12 @@ pub(crate) fn without(scenario: &Scenario, content: Content) -> Scenario {
     let run = scenario.recording.as_mut().unwrap();
     let mut each = |change: &dyn Fn(&mut AgentState)| run.frames.iter_mut().for_each(change);
     match content {
-        Content::RobotTrack => only(run, |agent| agent != AgentId::Robot),
+        // The robot keeps its radius and its pace, which are content of other kinds, and is never there.
+        Content::RobotTrack => each(&|state| {
+            if state.agent_id() == AgentId::Robot {
+                state.flags = AgentState::flags(AgentId::Robot, None, 2);
+            }
+        }),
         Content::PeopleTracks => only(run, |agent| agent == AgentId::Robot),
         Content::Headings => each(&|state| state.yaw = 0.0),
         Content::Velocities => each(&|state| (state.vx, state.vy, state.omega) = (0.0, 0.0, 0.0)),

@@ -1,12 +1,14 @@
 //! People of a scenario as agents of HuNavSim.
 
+use std::collections::BTreeMap;
+
 use socrates_hunav::agents::MAX_AGENTS;
 use socrates_hunav::{AgentEntry, AgentsFile, BehaviorEntry, Dialect, GoalEntry, InitPose, Reaction};
 use socrates_model::{AgentId, AgentState, HumanProposal, Point};
 
 use super::super::Scenario;
 use super::super::content::Content;
-use super::super::frames::{angle, plain_name, real};
+use super::super::frames::{angle, plain_name, real, small_ids};
 use super::Kit;
 use super::trees::Trees;
 use crate::graph::{Unusable, micro};
@@ -22,6 +24,8 @@ const PACES_MPS: std::ops::RangeInclusive<f64> = 0.2..=1.8;
 const GOAL_M: f64 = 0.3;
 /// Within this distance of the node of an encounter somebody is there, m.
 const THERE_M: f64 = 1.5;
+/// Around the node of an encounter robot and person meet within this distance of it, m.
+const AROUND_M: f64 = 3.0;
 /// Looks of people.
 const SKINS: i64 = 5;
 
@@ -38,6 +42,7 @@ pub(super) fn agents(
         let problem = format!("{} people; an agents file has 1 to {MAX_AGENTS}", humans.len());
         return Err(Unusable::new("proposal.json humans", problem, "choose a format of tracks, such as `jupedsim`"));
     }
+    small_ids(humans.iter().map(|human| human.id.into()))?;
     let map = plain_name(&scenario.location.name);
     if map != scenario.location.name {
         let at = format!("location `{}`", scenario.location.name);
@@ -165,14 +170,30 @@ impl<'a> Track<'a> {
         self.0.first().copied()
     }
 
-    /// The pace at which somebody walks to their first encounter in the time that the run took, m/s.
+    /// When they came to a place.
+    fn arrival(&self, at: &Point) -> Option<&AgentState> {
+        self.0.iter().copied().find(|state| (state.point() - at).norm() <= THERE_M)
+    }
+
+    /// When they were nearest to the robot around the node of their encounter.
+    fn meeting(&self, scenario: &Scenario, at: &Point) -> Option<&AgentState> {
+        let run = scenario.recording.as_ref()?;
+        let absent = run.header.absent();
+        let robot = run.track(AgentId::Robot).filter(|state| state.is_there(absent));
+        let robot: BTreeMap<u64, Point> = robot.map(|state| (state.tick, state.point())).collect();
+        let around = self.0.iter().copied().filter(|state| (state.point() - at).norm() <= AROUND_M);
+        let apart = around.filter_map(|state| Some((state, (robot.get(&state.tick)? - state.point()).norm())));
+        apart.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(state, _)| state)
+    }
+
+    /// The pace at which somebody walks to their first encounter in the time that the run took, waits included, m/s.
     fn pace(&self, scenario: &Scenario, human: &HumanProposal, way: &[Point]) -> Option<f64> {
         if way.len() < 2 {
             return None;
         }
         let node = scenario.paths.encounter_of(human.id)?;
         let at = scenario.location.graph.node(node)?.at;
-        let (first, there) = (self.first()?, self.0.iter().find(|state| (state.point() - at).norm() <= THERE_M)?);
+        let (first, there) = (self.first()?, self.meeting(scenario, &at).or_else(|| self.arrival(&at))?);
         let walked: f64 = self
             .0
             .windows(2)

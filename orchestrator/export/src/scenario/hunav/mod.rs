@@ -77,6 +77,7 @@ pub(super) const HUNAV_1_0: Format = Format {
     foreign: Foreign::Neither,
     checked_by: CHECKED,
     needs_run: false,
+    feature: None,
     lacks: lacks![(Content::Encounters, NO_MANAGER), (Content::Trees, FIXED)],
     write: |scenario, losses| write(scenario, losses, &V1_0),
 };

@@ -24,7 +24,7 @@ pub use self::bag::{Bag, Channel, Message};
 use self::cdr::Cdr;
 use self::scan::{BEAMS, Lidar};
 use super::content::{Content, WORDS};
-use super::frames::{Sample, file_name, number, samples};
+use super::frames::{Sample, file_name, number, samples, small_ids};
 use super::sdf::robot_yaml;
 use super::{File, Files, Foreign, Format, Scenario, map_files};
 use crate::graph::Unusable;
@@ -62,6 +62,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "PyPI `rosbags` 0.11.9 and `mcap-ros2-support` 0.6.0",
     needs_run: true,
+    feature: None,
     lacks: &[
         (Content::Leaves, "messages of ROS have no place for it"),
         (Content::Events, "messages of ROS have no place for it"),
@@ -79,7 +80,7 @@ fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
     let Some(run) = &scenario.recording else { return Ok(Files::new()) };
     let name = file_name(&scenario.name, losses);
     let mcap = format!("{name}_0.mcap");
-    let bag = recorded(scenario, run)?;
+    let bag = recorded(scenario, run, losses)?;
     let metadata = bag.metadata(&mcap)?;
     let open = socrates_model::Location { doors: Vec::new(), ..scenario.location.clone() };
     let (route, _) = crate::nav2_route::write(&open);
@@ -97,7 +98,12 @@ fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
 }
 
 /// The bag of a run.
-fn recorded(scenario: &Scenario, run: &Recording) -> Result<Bag, Unusable> {
+fn recorded(scenario: &Scenario, run: &Recording, losses: &mut Losses) -> Result<Bag, Unusable> {
+    small_ids(run.header.agents.iter().map(|info| info.agent))?;
+    for group in scenario.proposal.groups.iter().filter(|group| group.id.0 >= u32::from(ALONE)) {
+        let why = "HuNavSim's message has a byte for a group, and 255 is none: its people are written as alone";
+        losses.note("groups above 254", format!("proposal.json groups: {}", group.id), why);
+    }
     let mut bag = Bag::default();
     let cast = Cast::of(scenario, run);
     bag.send(TF_STATIC, 0, transform(0, "map", "odom", Point::origin(), 0.0));

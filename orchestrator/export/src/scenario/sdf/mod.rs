@@ -2,11 +2,11 @@
 //!
 //! Sun and ground stand in the file itself: `model://` is found by one Gazebo and not by another.
 
-mod script;
+pub(super) mod script;
 
 use std::fmt::Write as _;
 
-use socrates_model::{AgentId, Door, DoorKind, DoorOpens};
+use socrates_model::{AgentId, Cell, Door, DoorKind, DoorOpens};
 
 use self::script::Waypoint;
 use super::boxes::{Block, blocks};
@@ -19,9 +19,9 @@ use crate::not_carried::Losses;
 /// Height of walls, m.
 pub(super) const WALL_M: f64 = 2.5;
 /// Height of doors, m.
-const DOOR_M: f64 = 2.1;
+pub(super) const DOOR_M: f64 = 2.1;
 /// Thickness of doors, m.
-const LEAF_M: f64 = 0.05;
+pub(super) const LEAF_M: f64 = 0.05;
 /// Height of the lamp of an elevator, m.
 const LAMP_M: f64 = 2.4;
 /// Largest number of boxes of a world.
@@ -38,6 +38,7 @@ pub(super) const FORMAT: Format = Format {
     foreign: Foreign::Parsed,
     checked_by: "crate `sdformat` 0.1.0, and Debian's `libsdformat12` where it is installed",
     needs_run: false,
+    feature: None,
     lacks: &[
         (Content::RobotTrack, "the robot is yours; its start and way points stand in robot.yaml"),
         (Content::Velocities, REPLAY),
@@ -104,9 +105,14 @@ fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
 
 /// The walls of a location as boxes.
 pub(super) fn walls(scenario: &Scenario, longest_m: f64) -> Result<Vec<Block>, Unusable> {
-    let blocks = blocks(&scenario.location.grid, longest_m);
+    boxes(scenario, Cell::Occupied, longest_m)
+}
+
+/// The cells of a kind as boxes.
+pub(super) fn boxes(scenario: &Scenario, kind: Cell, longest_m: f64) -> Result<Vec<Block>, Unusable> {
+    let blocks = blocks(&scenario.location.grid, kind, longest_m);
     if blocks.len() > MOST_BLOCKS {
-        let problem = format!("the walls are {} boxes; at most {MOST_BLOCKS} are written", blocks.len());
+        let problem = format!("the cells of a kind are {} boxes; at most {MOST_BLOCKS} are written", blocks.len());
         return Err(Unusable::new(
             "location.json grid",
             problem,

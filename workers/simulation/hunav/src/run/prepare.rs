@@ -216,8 +216,9 @@ const RECORDED_RADIUS_M: f64 = 0.28;
 /// Recorded people who are not in the agents file.
 fn recorded(inputs: &Inputs<'_>) -> Vec<AgentEntry> {
     let Some(tracks) = inputs.tracks else { return Vec::new() };
-    let strangers =
-        tracks.iter().filter(|(id, _)| !inputs.agents.agents.iter().any(|agent| agent.id == i64::from(*id)));
+    let is_robot = |id: u32| id == 0 && inputs.robot.as_ref().is_some_and(|robot| robot.track.is_some());
+    let is_listed = |id: u32| inputs.agents.agents.iter().any(|agent| agent.id == i64::from(id));
+    let strangers = tracks.iter().filter(|(id, _)| !is_listed(*id) && !is_robot(*id));
     strangers
         .map(|(id, track)| {
             let start = track.samples().first().map_or_else(Point::origin, |sample| sample.position);

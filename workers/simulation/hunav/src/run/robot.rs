@@ -1,5 +1,7 @@
-//! A robot without a planner: stands, or drives through points, and waits for whoever is in its way.
+//! A robot without a planner: stands, drives through points and waits for whoever is in its way, or replays a recorded way.
 
+use socrates_crowd::Person;
+use socrates_crowd::tracks::Track;
 use socrates_model::geometry::wrap_angle;
 use socrates_model::{Gesture, Point, Pose, Vector};
 
@@ -31,13 +33,32 @@ pub struct RobotSpec {
     pub radius_m: f64,
     /// Gestures from their times on, s, in order of time.
     pub gestures: Vec<(f64, Gesture)>,
+    /// A recorded way, which it takes tick by tick instead of driving; before it and after it the robot stands at its ends.
+    pub track: Option<Track>,
 }
 
 impl RobotSpec {
     /// A robot that stands at a pose.
     #[must_use]
     pub const fn standing(start: Pose) -> Self {
-        Self { id: None, start, goals: Vec::new(), cyclic: false, speed_mps: 0.6, radius_m: 0.35, gestures: Vec::new() }
+        Self {
+            id: None,
+            start,
+            goals: Vec::new(),
+            cyclic: false,
+            speed_mps: 0.6,
+            radius_m: 0.35,
+            gestures: Vec::new(),
+            track: None,
+        }
+    }
+
+    /// A robot that replays a recorded way, whoever is in it.
+    #[must_use]
+    pub fn replaying(track: Track) -> Self {
+        let start = track.samples().first().map_or_else(Point::origin, |sample| sample.position);
+        let facing = track.at(track.first_s(), &Person::standing(0, start)).map_or(0.0, |person| person.yaw);
+        Self { track: Some(track), ..Self::standing(Pose::new(start.x, start.y, facing)) }
     }
 }
 
@@ -90,6 +111,11 @@ impl Robot {
             .take_while(|(from_s, _)| *from_s <= now_s + 1e-9)
             .last()
             .map(|(_, gesture)| *gesture);
+        let here = Person { yaw: self.pose.yaw, velocity: self.velocity, ..Person::standing(0, self.at()) };
+        let replayed = self.spec.track.as_ref().map(|track| (track.at(now_s + dt, &here), now_s + dt > track.last_s()));
+        if let Some((person, is_over)) = replayed {
+            return self.replay(person, is_over);
+        }
         let Some(goal) = self.goal() else {
             self.halt();
             return false;
@@ -127,6 +153,19 @@ impl Robot {
         false
     }
 
+    /// Takes the place that the recorded way has for it. Says whether the way has ended just now.
+    fn replay(&mut self, person: Option<Person>, is_over: bool) -> bool {
+        let Some(person) = person else {
+            self.halt();
+            let ends = is_over && !self.arrived;
+            self.arrived |= ends;
+            return ends;
+        };
+        self.pose = Pose::new(person.position.x, person.position.y, wrap_angle(person.yaw));
+        self.velocity = person.velocity;
+        false
+    }
+
     fn halt(&mut self) {
         self.velocity = Vector::zeros();
         self.omega = 0.0;
@@ -148,6 +187,22 @@ mod tests {
         assert_eq!(arrivals, 1);
         assert!((robot.at() - Point::new(2.0, 2.0)).norm() < 0.25);
         assert_eq!(robot.gesture, Some(Gesture::Wait));
+    }
+
+    #[test]
+    fn it_replays_a_recorded_way_through_whoever_is_in_it_and_stands_at_its_end() {
+        let tracks = socrates_crowd::tracks::Tracks::read("t,id,x,y\n0,0,1,2\n2,0,3,2\n4,0,3,4\n").unwrap();
+        let mut robot = Robot::new(&RobotSpec::replaying(tracks.get(0).unwrap().clone()));
+        assert_eq!((robot.pose.x, robot.pose.y), (1.0, 2.0));
+        let arrivals = (0..600).filter(|tick| {
+            let arrived = robot.step(f64::from(*tick) * 0.01, 0.01, &[(Point::new(3.0, 2.0), 0.3)]);
+            if *tick == 99 {
+                assert!((robot.at() - Point::new(2.0, 2.0)).norm() < 1e-6, "{}", robot.at());
+            }
+            arrived
+        });
+        assert_eq!(arrivals.count(), 1);
+        assert!((robot.at() - Point::new(3.0, 4.0)).norm() < 0.03 && robot.velocity.norm() == 0.0, "{}", robot.at());
     }
 
     #[test]
