@@ -126,16 +126,16 @@ impl<'a> Config<'a> {
                 "the body is as large as its start has room for",
             );
         }
-        let mut parameters = json!({
-            "number": 1,
-            "radius": radius_m,
-            "v0": walker.speed_mps,
-            "distribution_mode": "by_number",
-        });
+        let mut parameters = Map::from_iter([
+            ("number".to_owned(), json!(1)),
+            ("radius".to_owned(), json!(radius_m)),
+            ("v0".to_owned(), json!(walker.speed_mps)),
+            ("distribution_mode".to_owned(), json!("by_number")),
+        ]);
         if walker.from_s > 0.0 {
-            parameters["use_flow_spawning"] = json!(true);
-            parameters["flow_start_time"] = json!(walker.from_s);
-            parameters["flow_end_time"] = json!(micro(walker.from_s + TRIED_S));
+            parameters.insert("use_flow_spawning".to_owned(), json!(true));
+            parameters.insert("flow_start_time".to_owned(), json!(walker.from_s));
+            parameters.insert("flow_end_time".to_owned(), json!(micro(walker.from_s + TRIED_S)));
         }
         let journey = format!("journey_{number}");
         self.starts.insert(
