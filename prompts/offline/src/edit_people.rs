@@ -28,7 +28,7 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     let old = crowd.len();
     let said = crowd.read(wish);
     let unread = unread(&said, &wish.quote);
-    let denied: Vec<Vec<Act>> = said.story.people.iter().map(|person| small::denied(person)).collect();
+    let denied: Vec<Vec<Act>> = said.story.people.iter().map(small::denied).collect();
     let mut read = small::told(&wish.quote, said);
     for (person, denied) in read.cast.people.iter_mut().zip(denied) {
         person.never.extend(denied.into_iter().map(|act| (act, wish.quote.clone())));

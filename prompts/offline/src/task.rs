@@ -70,7 +70,7 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             let elsewhere = onward.goal != task.goal || onward.via != task.via;
             // `Return` alone says of no errand where from.
             task.comes_home = !alone && if to.is_empty() { !elsewhere } else { to.iter().all(home) };
-            task.back.get_or_insert(text.get(errand.at.clone()).unwrap_or_default().to_owned());
+            task.back.get_or_insert_with(|| text.get(errand.at.clone()).unwrap_or_default().to_owned());
             task.used.push(errand.at);
             task.denied = onward.denied;
         }

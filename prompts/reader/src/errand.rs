@@ -4,14 +4,13 @@
 //! Bring mail from ward 2 to the exit, without entering the kitchen ─► From "ward 2" · To "exit" · denied "without entering the kitchen"
 //! ```
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
-use serde::Deserialize;
 use socrates_model::PlaceClass;
 
 use crate::chunk::{Chunk, Is, chunks};
 use crate::lexicon::Lexicon;
+use crate::rows::Set;
 use crate::token::{Mark, Sort, Token};
 
 /// What a place by name is for the robot's way.
@@ -79,50 +78,6 @@ pub struct Errand {
     pub legs: Vec<Leg>,
     /// Kinds of places.
     pub spots: Vec<Spot>,
-}
-
-/// Some words.
-#[derive(Debug, Default, Deserialize)]
-#[serde(from = "String")]
-pub(crate) struct Set(BTreeSet<String>);
-
-impl From<String> for Set {
-    fn from(words: String) -> Self {
-        Self(words.split_whitespace().map(str::to_owned).collect())
-    }
-}
-
-impl Set {
-    pub(crate) fn contains(&self, word: &str) -> bool {
-        self.0.contains(word)
-    }
-}
-
-/// The words of `errands.toml`, which says what each list is for.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Errands {
-    from: Set,
-    to: Set,
-    within: Set,
-    past: Set,
-    along: Set,
-    ends: Set,
-    joins: Set,
-    rides: Set,
-    any: Set,
-    denies: Set,
-    before_denial: Set,
-    returns: Set,
-    comes: Set,
-    back: Set,
-    returns_to: Set,
-    fetches: Set,
-    does: Set,
-    pub(crate) outside: Set,
-    pub(crate) front: Set,
-    pub(crate) at_door: Set,
-    pub(crate) door: Set,
 }
 
 /// A name has no more words than this.

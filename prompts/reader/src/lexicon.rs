@@ -2,11 +2,9 @@
 
 use serde::Deserialize;
 
-use crate::errand::Errands;
 use crate::pattern::{BadPattern, Patterns};
-use crate::rows::{Frame, PlaceRow, Rewrite, Scope, SignRow};
+use crate::rows::{Edits, Errands, Frame, PlaceRow, Rewrite, Scope, SignRow};
 use crate::token::Sort;
-use crate::wish::Edits;
 use crate::words::Words;
 
 /// Words and rows.

@@ -76,11 +76,11 @@ pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};
 pub use line::Line;
 pub use passes::Passes;
-pub use rows::{Act, Cue};
+pub use rows::{Act, Cue, Edit};
 pub use spot::Named;
 pub use statement::{Deed, Reason, Says, Statement};
 pub use story::{Person, Step, Story};
-pub use wish::{Edit, Whom, Wish};
+pub use wish::{Whom, Wish};
 
 /// A reader with its rows.
 #[derive(Debug, Default)]

@@ -7,7 +7,6 @@
 
 use std::ops::Range;
 
-use serde::Deserialize;
 use socrates_model::PlaceClass;
 
 use crate::cast::{Cast, People};
@@ -15,71 +14,9 @@ use crate::chunk::{Amount, Chunk, Is, chunks};
 use crate::find::longest;
 use crate::lexicon::Lexicon;
 use crate::noun::{Head, Noun, Pick};
+use crate::rows::{Edit, EditRow};
 use crate::token::{Mark, Sort, Token};
 use crate::words::Words;
-
-/// What an edit asks for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Edit {
-    /// A longer path.
-    Longer,
-    /// A shorter path.
-    Shorter,
-    /// The path the other way round.
-    Reverse,
-    /// A path that does not lead past a place.
-    Avoid,
-    /// A path from somewhere.
-    Start,
-    /// A path to somewhere.
-    End,
-    /// Another place of the meeting.
-    Move,
-    /// Somebody leaves the scenario.
-    Remove,
-    /// Somebody walks slower.
-    Slower,
-    /// Somebody walks faster.
-    Faster,
-    /// Nobody gestures.
-    NoGestures,
-    /// A group is no group any more.
-    Ungroup,
-    /// Some of those who are there form a group.
-    Group,
-    /// Two people change places.
-    Swap,
-    /// A gesture more, or another one instead.
-    Gesture,
-    /// Somebody new, or what somebody does.
-    Story,
-}
-
-impl Edit {
-    /// Its name in `edits.toml`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Longer => "longer",
-            Self::Shorter => "shorter",
-            Self::Reverse => "reverse",
-            Self::Avoid => "avoid",
-            Self::Start => "start",
-            Self::End => "end",
-            Self::Move => "move",
-            Self::Remove => "remove",
-            Self::Slower => "slower",
-            Self::Faster => "faster",
-            Self::NoGestures => "no_gestures",
-            Self::Ungroup => "ungroup",
-            Self::Group => "group",
-            Self::Swap => "swap",
-            Self::Gesture => "gesture",
-            Self::Story => "story",
-        }
-    }
-}
 
 /// One wish of an edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,47 +48,6 @@ pub struct Whom {
     pub robot: bool,
     /// Whether one of several is spoken of so that it may be anybody: `she`, `the man`, where nobody is called so.
     pub guess: bool,
-}
-
-/// A row of `edits.toml`.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct EditRow {
-    /// What it asks for.
-    pub(crate) edit: Edit,
-    /// Words of which each line has one in the edit.
-    has: Vec<String>,
-    /// Words of which it has none.
-    #[serde(default)]
-    lacks: String,
-    /// Whether the first of them begins it.
-    #[serde(default)]
-    first: bool,
-    /// Whether it names a place.
-    #[serde(default)]
-    place: bool,
-    /// Whether nobody does anything in it.
-    #[serde(default)]
-    still: bool,
-    /// Whether it names nobody new.
-    #[serde(default)]
-    known: bool,
-    /// Edits that ask for it.
-    pub(crate) reads: Vec<String>,
-    /// Edits that do not.
-    pub(crate) not: Vec<String>,
-}
-
-/// The file as written.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Edits {
-    asks: String,
-    adds: String,
-    everybody: String,
-    other: String,
-    #[serde(rename = "row")]
-    pub(crate) rows: Vec<EditRow>,
 }
 
 /// The wishes of an edit, in order.
