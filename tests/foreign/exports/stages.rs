@@ -1,15 +1,14 @@
 //! Stages of USD and tables of Parquet in the hands of readers that others wrote.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::OnceLock;
 
 use serde_json::Value;
-use socrates_tests::{root, skip};
+use socrates_tests::skip;
 
 use super::{export, requests};
 use crate::foreign::python::python;
-use crate::make;
+use crate::{make, socrates};
 
 /// The reader of stages, and what it finds.
 const STAGE_READERS: [&str; 1] = ["usd-core==26.11"];
@@ -69,45 +68,24 @@ fn the_validators_of_usd_find_nothing_and_walls_and_people_are_where_they_were()
     }
 }
 
-/// The program with the feature `parquet`, built once without the bus.
-fn program() -> Result<PathBuf, String> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("with-parquet");
-    let program = folder.join("debug/socrates");
-    if program.is_file() {
-        return Ok(program);
-    }
-    if !skip::second_ring() {
-        return Err("a program with the feature `parquet` is not here; `./gate --foreign` builds it".to_owned());
-    }
-    let built = Command::new("cargo")
-        .args(["build", "--quiet", "--locked", "-p", "socrates", "--no-default-features", "--features", "parquet"])
-        .arg("--target-dir")
-        .arg(&folder)
-        .env("CARGO_PROFILE_DEV_DEBUG", "0")
-        .current_dir(root())
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|why| format!("cargo: {why}"))?;
-    if built.status.success() { Ok(program) } else { Err(String::from_utf8_lossy(&built.stderr).into_owned()) }
-}
-
 #[test]
 fn a_reader_of_parquet_finds_the_positions_of_the_run() {
-    static PROGRAM: OnceLock<Result<PathBuf, String>> = OnceLock::new();
     let Some(python) = skip::installed(python("table-readers", &TABLE_READERS, "import pyarrow.parquet")) else {
         return;
     };
-    let Some(program) = skip::installed(PROGRAM.get_or_init(program).clone()) else { return };
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let (name, request) = requests().swap_remove(0);
     let (made, _) = make(at, name, &request, &[]);
     assert!(matches!(made.code, 0 | 3), "{}", made.err);
     let bundle = format!("bundle-{name}");
-    let mut exports = Command::new(program);
-    exports.args(["export", &bundle, "--to", FORMATS[1], "--out", "tables"]).current_dir(at).stdin(Stdio::null());
-    let out = exports.output().unwrap();
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let out = socrates(at, "tables", &["export", &bundle, "--to", FORMATS[1], "--out", "tables"]);
+    let built =
+        if out.err.contains("without the feature") { Err("the program has no `parquet`".to_owned()) } else { Ok(()) };
+    if skip::installed(built).is_none() {
+        return;
+    }
+    assert_eq!(out.code, 0, "{}", out.err);
     let (is_read, said) = read(&python, at, TABLES, &["tables", &format!("{bundle}/agents.csv")]);
     assert!(is_read, "{said}");
     let found: Value = serde_json::from_str(&said).unwrap();
