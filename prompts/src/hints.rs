@@ -41,7 +41,7 @@ const HINTS: [Hint; 9] = [
     },
     Hint {
         words: &["carry", "carri", "bring", "deliver", "fetch", "push", "take", "move", "transport", "load"],
-        says: "What the robot carries, fetches or delivers, and where it goes on to, is its errand: no fact of the run.",
+        says: "What the robot carries or delivers, and where it goes on to, is its errand: no fact of the run.",
     },
     Hint {
         words: &["wait"],

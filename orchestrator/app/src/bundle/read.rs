@@ -5,7 +5,9 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 use socrates_model::driver::Commands;
-use socrates_model::{Digest, Fault, Location, Report, Request, Run, ScenarioId};
+use socrates_model::{
+    Behaviors, Digest, FORMAT, Fault, Location, Paths, Proposal, Reading, Report, Request, Run, ScenarioId,
+};
 
 use super::files::{Files, archive};
 use super::{Bundle, Manifest, RunEntry};
@@ -59,6 +61,21 @@ fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bo
     let manifest = finished(files)?;
     let request = request(files)?;
     let location: Location = part(files, &LOCATION, &"")?;
+    let reading: Reading = part(files, &layout::READING, &"")?;
+    let proposal: Proposal = part(files, &layout::PROPOSAL, &"")?;
+    let paths: Paths = part(files, &layout::PATHS, &"")?;
+    let behaviors: Behaviors = part(files, &layout::BEHAVIORS, &"")?;
+    let written = [
+        (&layout::MANIFEST, manifest.format),
+        (&LOCATION, location.format),
+        (&layout::READING, reading.format),
+        (&layout::PROPOSAL, proposal.format),
+        (&layout::PATHS, paths.format),
+        (&layout::BEHAVIORS, behaviors.format),
+    ];
+    for (sheet, format) in written {
+        version(files, sheet.path, format)?;
+    }
     let faults = socrates_model::fault::hard(&socrates_maps::check(&location));
     if !faults.is_empty() {
         return Err(unusable(files, LOCATION.path, &faults));
@@ -70,17 +87,7 @@ fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bo
             .map_err(|why| Complaint::input(format!("`{}`: {why}", files.shown(&name)), HINT))?;
         runs.push((recording, report(files, entry)?));
     }
-    Ok(Bundle {
-        dir: dir.to_path_buf(),
-        manifest,
-        request,
-        location,
-        reading: part(files, &layout::READING, &"")?,
-        proposal: part(files, &layout::PROPOSAL, &"")?,
-        paths: part(files, &layout::PATHS, &"")?,
-        behaviors: part(files, &layout::BEHAVIORS, &"")?,
-        runs,
-    })
+    Ok(Bundle { dir: dir.to_path_buf(), manifest, request, location, reading, proposal, paths, behaviors, runs })
 }
 
 /// The reports of all runs of a bundle, without their recordings.
@@ -168,6 +175,14 @@ fn wrong(files: &Files, name: &str, key: &str, why: &str) -> Complaint {
     let key = key.trim_end_matches(".?");
     let at = if matches!(key, "." | "?") { String::new() } else { format!("`{key}`: ") };
     Complaint::input(format!("`{}`: {at}{why}", files.shown(name)), HINT)
+}
+
+/// Whether a file has the format that this program reads.
+fn version(files: &Files, name: &str, format: u32) -> Result<(), Complaint> {
+    if format == FORMAT {
+        return Ok(());
+    }
+    Err(wrong(files, name, "format", &format!("found {format}; this program reads {FORMAT}")))
 }
 
 fn unusable(files: &Files, name: &str, faults: &[Fault]) -> Complaint {
