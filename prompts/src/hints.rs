@@ -54,17 +54,31 @@ const HINTS: [Hint; 9] = [
     },
 ];
 
-/// Whether a text has a word that begins with one of these.
-pub(crate) fn called_for(text: &str, words: &[&str]) -> bool {
-    let lower = text.to_lowercase();
-    let mut each = lower.split(|c: char| !c.is_alphanumeric());
-    each.any(|word| words.iter().any(|beginning| word.starts_with(beginning)))
+/// The words of a request, in lower case.
+pub(crate) struct Words(Option<Vec<String>>);
+
+impl Words {
+    /// The words of a text.
+    pub(crate) fn of(text: &str) -> Self {
+        let lower = text.to_lowercase();
+        Self(Some(lower.split(|c: char| !c.is_alphanumeric()).map(str::to_owned).collect()))
+    }
+
+    /// Those of which nobody can tell what they call for: everything.
+    pub(crate) const fn unknown() -> Self {
+        Self(None)
+    }
+
+    /// Whether one of them begins so.
+    pub(crate) fn call_for(&self, beginnings: &[&str]) -> bool {
+        let begins = |word: &String| beginnings.iter().any(|beginning| word.starts_with(beginning));
+        self.0.as_ref().is_none_or(|words| words.iter().any(begins))
+    }
 }
 
-/// What texts call for, a line each; every hint where nobody can tell.
-pub(crate) fn of(text: Option<&str>) -> impl Iterator<Item = &'static str> {
-    let wanted = move |hint: &&Hint| text.is_none_or(|text| called_for(text, hint.words));
-    HINTS.iter().filter(wanted).map(|hint| hint.says)
+/// The hints that words call for.
+pub(crate) fn of(words: &Words) -> impl Iterator<Item = &'static str> {
+    HINTS.iter().filter(|hint| words.call_for(hint.words)).map(|hint| hint.says)
 }
 
 #[cfg(test)]
@@ -73,18 +87,18 @@ mod tests {
 
     #[test]
     fn a_hint_comes_with_its_words_and_without_them_stays_away() {
-        let told = |text: &str| of(Some(text)).collect::<Vec<_>>();
+        let told = |text: &str| of(&Words::of(text)).collect::<Vec<_>>();
         assert!(told("A nurse crosses its way.").is_empty());
         assert_eq!(told("Two nurses CHAT.").len(), 1);
         assert!(told("Two nurses chat.")[0].contains("`formation`"));
         // A word inside another one calls for nothing.
         assert!(told("An unfriendly steam pipe").is_empty());
-        assert_eq!(of(None).count(), HINTS.len());
+        assert_eq!(of(&Words::unknown()).count(), HINTS.len());
     }
 
     #[test]
     fn every_hint_speaks_of_what_the_tables_have() {
-        let tables = crate::vocabulary::proposal_tables() + &crate::vocabulary::called_for(None);
+        let tables = crate::vocabulary::proposal_tables() + &crate::vocabulary::called_for(&Words::unknown());
         for Hint { words, says } in &HINTS {
             assert!(words.iter().all(|word| !word.is_empty() && *word == word.to_lowercase()), "{words:?}");
             for name in says.split('`').skip(1).step_by(2).flat_map(|code| code.split([' ', ':', '='])) {

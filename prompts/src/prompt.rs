@@ -7,6 +7,7 @@ use socrates_model::job::Stage;
 use socrates_model::statement::TextKey;
 use socrates_model::{Digest, HumanProposal, Proposal, ReadBy};
 
+use crate::hints::Words;
 use crate::message::{Message, Picture, Role};
 use crate::question::Question;
 use crate::schema::{answer_schema, keyed};
@@ -187,7 +188,7 @@ impl Question {
     fn naive_rules(&self) -> String {
         let tables = match self.stage {
             Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-                vocabulary::proposal_tables() + &vocabulary::called_for(None)
+                vocabulary::proposal_tables() + &vocabulary::called_for(&Words::unknown())
             }
             Stage::Paths => String::new(),
             Stage::Behaviors => trees::TAGS.join(", "),
@@ -261,11 +262,12 @@ impl Question {
     /// What the words of the texts call for beyond the rules; everything for a language that nobody here knows.
     fn called_for(&self) -> String {
         let texts: Vec<&str> = TextKey::ALL.into_iter().map(|key| key.text_of(&self.request)).collect();
-        let text = texts.join(" ");
-        let known = (self.reading.by != ReadBy::AuthorAlone).then_some(text.as_str());
-        // Whoever gets no rough scenario may design with any test.
-        let tests = vocabulary::called_for(known.filter(|_| self.request.rough_scenario.is_some()));
-        let hints: String = hints::of(known).map(|says| format!("{says}\n")).collect();
+        let known = self.reading.by != ReadBy::AuthorAlone;
+        let words = if known { Words::of(&texts.join(" ")) } else { Words::unknown() };
+        let hints: String = hints::of(&words).map(|says| format!("{says}\n")).collect();
+        // An author without a rough scenario may design with any test.
+        let free = self.request.rough_scenario.is_none().then(Words::unknown);
+        let tests = vocabulary::called_for(free.as_ref().unwrap_or(&words));
         if tests.is_empty() && hints.is_empty() { String::new() } else { format!("# For this request\n{hints}{tests}") }
     }
 

@@ -11,7 +11,8 @@ use socrates_model::{
     Action, AgentId, ClauseRole, Gesture, GroupId, HumanId, PlaceClass, Predicate, Proposal, RobotRule, Trigger,
 };
 
-use crate::{hints, terse};
+use crate::hints::Words;
+use crate::terse;
 
 /// Everything a proposal may say, in its short form.
 pub(crate) fn proposal_tables() -> String {
@@ -38,9 +39,9 @@ pub(crate) fn proposal_tables() -> String {
 }
 
 /// The tests of a few requests only that the words of one call for, a line each; all of them where nobody can tell.
-pub(crate) fn called_for(text: Option<&str>) -> String {
+pub(crate) fn called_for(said: &Words) -> String {
     let wanted = |test: &Test| match test.shown {
-        Shown::Called(words) => text.is_none_or(|text| hints::called_for(text, words)),
+        Shown::Called(words) => said.call_for(words),
         Shown::InFull | Shown::ByName => false,
     };
     let (setup, outcome): (Vec<_>, Vec<_>) =
@@ -448,7 +449,7 @@ mod tests {
     #[test]
     fn every_alternative_of_the_types_has_a_row() {
         let schema = serde_json::to_value(schemars::schema_for!(socrates_model::Proposal)).unwrap();
-        let text = proposal_tables() + &called_for(None);
+        let text = proposal_tables() + &called_for(&Words::unknown());
         for name in ["Trigger", "Action", "Relation", "RobotWhen", "RobotDo", "Predicate"] {
             let found = crate::schema::alternatives(&schema["$defs"][name]);
             assert!(!found.is_empty(), "{name}");

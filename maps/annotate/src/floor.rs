@@ -70,7 +70,7 @@ impl Floor {
             clear_m: Layer::filled(0, 0, 0.0),
             bare_m: Layer::filled(0, 0, 0.0),
             things: Things::none(),
-            blocks: Blocks::of(&Layer::filled(0, 0, 0.0), grid.resolution_m),
+            blocks: Blocks::none(),
         };
         let mut cleaned = grid.clone();
         if floor.drop_dust(&mut cleaned, remarks) {

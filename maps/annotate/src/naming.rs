@@ -83,12 +83,12 @@ impl<'a> Naming<'a> {
     pub(crate) fn kind(&self, place: usize) -> (String, f64) {
         let degree = self.neighbors(place).len();
         let at = self.sketch.at(place);
+        let what = self.what(place);
         // The clean map is closed across openings.
-        let mouth = self.what(place) == What::Mouth;
-        let clear_m = if mouth { self.floor.raw_m(&at) } else { self.floor.clean_m(&at) };
+        let clear_m = if what == What::Mouth { self.floor.raw_m(&at) } else { self.floor.clean_m(&at) };
         let sure = |value: f64, limit: f64| 0.6 + 0.4 * ((value / limit).ln().abs() / 0.4).min(1.0);
         let told = |kind: &str, sure: f64| (kind.to_owned(), sure);
-        match self.what(place) {
+        match what {
             What::Door(number) => {
                 let Some(passage) = self.regions.passages.get(number) else { return told("DOORWAY", 0.5) };
                 let outward =

@@ -15,12 +15,31 @@ const GAP_M: f64 = 0.3;
 /// Sides of a block, m: a pier of a wall is thinner, no room is smaller than its walls.
 const BLOCK_M: (f64, f64) = (0.8, 2.6);
 
-/// Free-standing things of a map.
-pub(crate) struct Things {
-    /// Number of the thing of each cell of the map, from 1.
+/// Parts of a layer of which some are marked.
+struct Marked {
+    /// Number of the part of each cell, from 1.
     of_cell: Layer<u32>,
-    is_thing: Vec<bool>,
+    is_marked: Vec<bool>,
 }
+
+impl Marked {
+    fn none() -> Self {
+        Self { of_cell: Layer::filled(0, 0, 0), is_marked: Vec::new() }
+    }
+
+    /// Whether the part of this number is marked.
+    fn has(&self, number: u32) -> bool {
+        (number as usize).checked_sub(1).and_then(|at| self.is_marked.get(at)) == Some(&true)
+    }
+
+    /// The marked part of a cell.
+    fn at(&self, (column, row): Cell) -> Option<u32> {
+        self.of_cell.get(column, row).filter(|number| self.has(*number))
+    }
+}
+
+/// Free-standing things of a map, by its cells.
+pub(crate) struct Things(Marked);
 
 #[expect(
     clippy::cast_precision_loss,
@@ -52,38 +71,34 @@ impl Things {
             let free = !part.extent.is_at_rim((grid.width, grid.height)) && part.extent.longest() <= longest;
             free && thick_m > THICK_M
         });
-        Self { is_thing: is_thing.collect(), of_cell }
+        Self(Marked { is_marked: is_thing.collect(), of_cell })
     }
 
     /// No things.
     pub(crate) fn none() -> Self {
-        Self { of_cell: Layer::filled(0, 0, 0), is_thing: Vec::new() }
+        Self(Marked::none())
     }
 
     /// Frees the cells of all things; says whether there are any.
     pub(crate) fn clear_away(&self, grid: &mut Grid) -> bool {
-        for (cell, number) in grid.cells.iter_mut().zip(&self.of_cell.values) {
-            if (*number as usize).checked_sub(1).and_then(|at| self.is_thing.get(at)) == Some(&true) {
+        for (cell, number) in grid.cells.iter_mut().zip(&self.0.of_cell.values) {
+            if self.0.has(*number) {
                 *cell = Kind::Free;
             }
         }
-        self.is_thing.contains(&true)
+        self.0.is_marked.contains(&true)
     }
 
     /// Whether a thing lies at a pixel position.
     pub(crate) fn holds(&self, (px, py): (f64, f64)) -> bool {
-        let inside = px >= 0.0 && py >= 0.0;
-        let number = if inside { self.of_cell.get(px as usize, py as usize).unwrap_or(0) } else { 0 };
-        (number as usize).checked_sub(1).and_then(|at| self.is_thing.get(at)) == Some(&true)
+        px >= 0.0 && py >= 0.0 && self.0.at((px as usize, py as usize)).is_some()
     }
 }
 
 /// Free-standing blocks, outlines of crates and pallets among them: what lies between two of them, or beside one, is no door.
-pub(crate) struct Blocks {
-    /// Number of what stands at each working cell, from 1.
-    of_cell: Layer<u32>,
-    is_block: Vec<bool>,
-}
+///
+/// By working cells.
+pub(crate) struct Blocks(Marked);
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "clearances and cells of a map")]
 impl Blocks {
@@ -99,14 +114,16 @@ impl Blocks {
             let extent = &part.extent;
             !extent.is_at_rim(size) && side_m(extent.shortest()) >= BLOCK_M.0 && side_m(extent.longest()) <= BLOCK_M.1
         };
-        let is_block = found.iter().map(is_block).collect();
-        Self { of_cell, is_block }
+        Self(Marked { is_marked: found.iter().map(is_block).collect(), of_cell })
+    }
+
+    /// No blocks.
+    pub(crate) fn none() -> Self {
+        Self(Marked::none())
     }
 
     /// The block at a working cell.
-    pub(crate) fn at(&self, (column, row): Cell) -> Option<u32> {
-        let number = self.of_cell.get(column, row)?;
-        let at = (number as usize).checked_sub(1)?;
-        (self.is_block.get(at) == Some(&true)).then_some(number)
+    pub(crate) fn at(&self, cell: Cell) -> Option<u32> {
+        self.0.at(cell)
     }
 }

@@ -32,7 +32,7 @@ pub struct SimulateOptions {
     pub duration: f64,
     /// A robot that stands at x,y,yaw or drives on through more points: `0,0,0;5,0;5,3`.
     pub robot: Option<String>,
-    /// Who moves an agent: `2=orca`, `social-forces`, or `track`; may be repeated.
+    /// Model that moves an agent: `2=orca`, `social-forces`, or `track`; may be repeated.
     pub model: Vec<String>,
     /// Recorded tracks (CSV with `t,id,x,y`) of people who are replayed; 0 is the robot where neither file nor `robot` has one.
     pub tracks: Option<PathBuf>,

@@ -2,6 +2,7 @@
 
 mod sqlite;
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -42,6 +43,14 @@ fn missing(format: &Format) -> Option<&'static str> {
     format.feature.filter(|feature| !FEATURES.contains(feature))
 }
 
+/// Why something is not written by a program without a feature.
+fn unbuilt(what: &dyn Display, feature: &str) -> Complaint {
+    Complaint::input(
+        format!("cannot write `{what}`: this program was built without the feature `{feature}`"),
+        format!("build it with `cargo build --release -p socrates --features {feature}`"),
+    )
+}
+
 /// Lists the formats that this program writes, a line each: name, and what it is.
 pub fn formats(talk: &Printer) {
     let written: Vec<&Format> = FORMATS.iter().filter(|format| missing(format).is_none()).collect();
@@ -66,10 +75,7 @@ pub fn formats(talk: &Printer) {
 pub fn export(talk: &Printer, options: &ExportOptions) -> Result<(), Complaint> {
     let format = Format::named(&options.format).map_err(|why| complaint(&why, None))?;
     if let Some(feature) = missing(format) {
-        return Err(Complaint::input(
-            format!("cannot write `{}`: this program was built without the feature `{feature}`", format.name),
-            format!("build it with `cargo build --release -p socrates --features {feature}`"),
-        ));
+        return Err(unbuilt(&format.name, feature));
     }
     let bundles = bundles_in(std::slice::from_ref(&options.what))?;
     if let [only] = bundles.as_slice()
@@ -164,9 +170,8 @@ fn columns(path: &Path, table: &Columns) -> Result<(), Complaint> {
 }
 
 #[cfg(not(feature = "parquet"))]
-fn columns(path: &Path, table: &Columns) -> Result<(), Complaint> {
-    let what = format!("cannot write `{}`: this program makes no table of `{}`", path.display(), table.name);
-    Err(Complaint::input(what, "build it with `cargo build --release -p socrates --features parquet`"))
+fn columns(path: &Path, _: &Columns) -> Result<(), Complaint> {
+    Err(unbuilt(&path.display(), "parquet"))
 }
 
 /// The file of a bag.

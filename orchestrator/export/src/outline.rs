@@ -2,8 +2,16 @@
 
 use std::collections::BTreeMap;
 
+use socrates_model::{Grid, Point};
+
 /// A corner of cells: column and row of the cell to its lower right.
 pub(crate) type Corner = (usize, usize);
+
+/// A corner of cells in the map frame, m.
+#[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
+pub(crate) fn placed(grid: &Grid, (column, row): Corner) -> Point {
+    grid.world_from_pixel(column as f64, row as f64)
+}
 
 /// Slack that makes stairs of slanted walls straight lines, cells.
 pub(crate) const STRAIGHT: f64 = 0.8;

@@ -14,6 +14,23 @@ use super::{Bundle, Manifest, RunEntry};
 use crate::exit::Complaint;
 use crate::layout::{self, LOCATION, Sheet};
 
+/// A file of a bundle that says of which format it is.
+trait Versioned {
+    fn format(&self) -> u32;
+}
+
+macro_rules! versioned {
+    ($($file:ty),*) => {
+        $(impl Versioned for $file {
+            fn format(&self) -> u32 {
+                self.format
+            }
+        })*
+    };
+}
+
+versioned!(Behaviors, Commands, Location, Manifest, Paths, Proposal, Reading, Report);
+
 /// What helps with a file that was changed or damaged.
 const HINT: &str =
     "the file was changed by hand or is damaged: `socrates run BUNDLE/request.toml` makes the bundle again";
@@ -61,21 +78,6 @@ fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bo
     let manifest = finished(files)?;
     let request = request(files)?;
     let location: Location = part(files, &LOCATION, &"")?;
-    let reading: Reading = part(files, &layout::READING, &"")?;
-    let proposal: Proposal = part(files, &layout::PROPOSAL, &"")?;
-    let paths: Paths = part(files, &layout::PATHS, &"")?;
-    let behaviors: Behaviors = part(files, &layout::BEHAVIORS, &"")?;
-    let written = [
-        (&layout::MANIFEST, manifest.format),
-        (&LOCATION, location.format),
-        (&layout::READING, reading.format),
-        (&layout::PROPOSAL, proposal.format),
-        (&layout::PATHS, paths.format),
-        (&layout::BEHAVIORS, behaviors.format),
-    ];
-    for (sheet, format) in written {
-        version(files, sheet.path, format)?;
-    }
     let faults = socrates_model::fault::hard(&socrates_maps::check(&location));
     if !faults.is_empty() {
         return Err(unusable(files, LOCATION.path, &faults));
@@ -87,7 +89,17 @@ fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bo
             .map_err(|why| Complaint::input(format!("`{}`: {why}", files.shown(&name)), HINT))?;
         runs.push((recording, report(files, entry)?));
     }
-    Ok(Bundle { dir: dir.to_path_buf(), manifest, request, location, reading, proposal, paths, behaviors, runs })
+    Ok(Bundle {
+        dir: dir.to_path_buf(),
+        manifest,
+        request,
+        location,
+        reading: part(files, &layout::READING, &"")?,
+        proposal: part(files, &layout::PROPOSAL, &"")?,
+        paths: part(files, &layout::PATHS, &"")?,
+        behaviors: part(files, &layout::BEHAVIORS, &"")?,
+        runs,
+    })
 }
 
 /// The reports of all runs of a bundle, without their recordings.
@@ -147,7 +159,7 @@ fn report(files: &Files, entry: &RunEntry) -> Result<Report, Complaint> {
 }
 
 /// A part of the bundle: the one of this name, or the only one of its kind.
-fn part<T: DeserializeOwned>(files: &Files, sheet: &Sheet, name: &dyn Display) -> Result<T, Complaint> {
+fn part<T: DeserializeOwned + Versioned>(files: &Files, sheet: &Sheet, name: &dyn Display) -> Result<T, Complaint> {
     json(files, &sheet.of(name))
 }
 
@@ -160,13 +172,17 @@ fn text(files: &Files, name: &str) -> Result<String, Complaint> {
         .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", files.shown(name)), HINT))
 }
 
-/// A JSON file, decoded; an error has the file, the key and, in the decoder's own words, the line.
-fn json<T: DeserializeOwned>(files: &Files, name: &str) -> Result<T, Complaint> {
+/// A JSON file of the format that this program reads, decoded; an error has the file, the key and, in the decoder's own words, the line.
+fn json<T: DeserializeOwned + Versioned>(files: &Files, name: &str) -> Result<T, Complaint> {
     let text = text(files, name)?;
     let mut from = serde_json::Deserializer::from_str(&text);
-    let value = serde_path_to_error::deserialize(&mut from)
+    let value: T = serde_path_to_error::deserialize(&mut from)
         .map_err(|why| wrong(files, name, &why.path().to_string(), &why.inner().to_string()))?;
     from.end().map_err(|why| wrong(files, name, ".", &why.to_string()))?;
+    let format = value.format();
+    if format != FORMAT {
+        return Err(wrong(files, name, "format", &format!("found {format}; this program reads {FORMAT}")));
+    }
     Ok(value)
 }
 
@@ -175,14 +191,6 @@ fn wrong(files: &Files, name: &str, key: &str, why: &str) -> Complaint {
     let key = key.trim_end_matches(".?");
     let at = if matches!(key, "." | "?") { String::new() } else { format!("`{key}`: ") };
     Complaint::input(format!("`{}`: {at}{why}", files.shown(name)), HINT)
-}
-
-/// Whether a file has the format that this program reads.
-fn version(files: &Files, name: &str, format: u32) -> Result<(), Complaint> {
-    if format == FORMAT {
-        return Ok(());
-    }
-    Err(wrong(files, name, "format", &format!("found {format}; this program reads {FORMAT}")))
 }
 
 fn unusable(files: &Files, name: &str, faults: &[Fault]) -> Complaint {

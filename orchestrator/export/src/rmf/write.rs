@@ -7,7 +7,7 @@ use socrates_model::{Cell, DoorKind, Location, NodeId, Point};
 
 use crate::graph::{crossed, door_rule, micro};
 use crate::not_carried::Losses;
-use crate::outline::{STRAIGHT, outlines};
+use crate::outline::{STRAIGHT, outlines, placed};
 
 use super::{BEND, KIND, LEVEL, NAMES, TYPE};
 
@@ -168,11 +168,10 @@ fn lanes(location: &Location, level: &mut Level) {
 
 fn walls(location: &Location, level: &mut Level) {
     let grid = &location.grid;
-    #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
-    let at = |(column, row): (usize, usize)| grid.world_from_pixel(column as f64, row as f64);
     let text = |text: &str| Value::Text(text.to_owned());
     for line in outlines(grid.width, grid.height, STRAIGHT, |column, row| grid.at(column, row) == Cell::Free) {
-        let corners: Vec<usize> = line.iter().map(|corner| level.vertex(&at(*corner), "", Parameters::new())).collect();
+        let corners: Vec<usize> =
+            line.iter().map(|corner| level.vertex(&placed(grid, *corner), "", Parameters::new())).collect();
         for (place, from) in corners.iter().enumerate() {
             let Some(to) = corners.get((place + 1) % corners.len()) else { continue };
             let parameters = Parameters::from([("alpha", Value::Real(1.0)), ("texture_name", text("default"))]);
@@ -182,7 +181,7 @@ fn walls(location: &Location, level: &mut Level) {
     let known = |column: usize, row: usize| grid.at(column, row) != Cell::Unknown;
     // Outer outlines alone turn the same way as the first; holes of unknown floor are bounded by their walls.
     for line in outlines(grid.width, grid.height, STRAIGHT, known).into_iter().filter(|line| turns_right(line)) {
-        let vertices = line.iter().map(|corner| level.vertex(&at(*corner), "", Parameters::new())).collect();
+        let vertices = line.iter().map(|corner| level.vertex(&placed(grid, *corner), "", Parameters::new())).collect();
         let parameters = Parameters::from([
             ("texture_name", text("default")),
             ("texture_rotation", Value::Real(0.0)),

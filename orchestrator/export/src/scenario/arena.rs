@@ -10,12 +10,13 @@ use serde_json::{Value, json};
 use socrates_model::{AgentId, Cell, DoorKind, Point};
 
 use super::content::{Content, WORDS};
-use super::frames::{file_name, plain_name, real};
+use super::frames::{file_name, plain_name, point, real};
+use super::outline::sides;
 use super::routes::{self, SIMULATED, Walker};
 use super::{File, Files, Foreign, Format, Scenario, map_files};
 use crate::graph::{Unusable, micro};
 use crate::not_carried::Losses;
-use crate::outline::{STRAIGHT, outlines};
+use crate::outline::placed;
 
 const ROBOT: &str = "the robot is yours; its start and its goal stand in the scenario";
 const NO_WAITS: &str = "people walk from way point to way point without a stop";
@@ -75,18 +76,11 @@ pub(super) const ARENA_5: Format = Format {
 fn everybody(scenario: &Scenario, losses: &mut Losses) -> Result<(Option<Walker>, Vec<Walker>), Unusable> {
     let (robots, people): (Vec<Walker>, Vec<Walker>) =
         routes::walkers(scenario)?.into_iter().partition(|walker| walker.agent == AgentId::Robot);
-    for place in Content::PeopleTracks.places(scenario) {
-        losses.note("ways of people tick by tick", place, SIMULATED);
-    }
+    scenario.note_people(Content::PeopleTracks, "ways of people tick by tick", SIMULATED, losses);
     for walker in &people {
-        let at = || format!("paths.json {}", walker.agent);
-        if walker.legs.iter().any(|leg| leg.wait_s > 0.0) {
-            losses.note("waits of people", at(), NO_WAITS);
-        }
-        if walker.from_s > 0.0 {
-            losses.note("absence of people", at(), "everybody is there from the beginning");
-        }
-        losses.note("ends of ways", at(), LOOPS);
+        walker.note_waits(NO_WAITS, losses);
+        walker.note_absence(losses);
+        losses.note("ends of ways", walker.place(), LOOPS);
     }
     if scenario.paths.robot.len() > 2 {
         losses.note("nodes of the robot's path", "paths.json robot", ROBOT);
@@ -187,33 +181,20 @@ fn write_5(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> 
 
 /// Walls and doors of the location as one zone; what the scenario is about stands in its description.
 fn world_5(scenario: &Scenario, losses: &mut Losses) -> String {
-    let (location, proposal) = (&scenario.location, &scenario.proposal);
+    let location = &scenario.location;
     let grid = &location.grid;
-    #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
-    let placed = |corner: (usize, usize)| grid.world_from_pixel(corner.0 as f64, corner.1 as f64);
     let pair = |at: Point| format!("[{}, {}]", real(at.x), real(at.y));
-    let point = |at: Point| format!("{{x: {}, y: {}}}", real(at.x), real(at.y));
     let corners =
-        [(0, grid.height), (grid.width, grid.height), (grid.width, 0), (0, 0)].map(|corner| pair(placed(corner)));
-    let told = [&proposal.title, &proposal.description, &proposal.robot.task, &proposal.robot.expected_behavior];
-    let told = told.into_iter().chain(proposal.humans.iter().map(|human| &human.behavior));
-    let told: Vec<&str> = told.map(String::as_str).filter(|text| !text.is_empty()).collect();
+        [(0, grid.height), (grid.width, grid.height), (grid.width, 0), (0, 0)].map(|corner| pair(placed(grid, corner)));
     let mut text = format!(
         "zones:\n- name: {}\n  description: {}\n  corners: [{}]\n",
         plain_name(&location.name),
-        // A text of JSON is one of YAML.
-        Value::from(told.join(" / ")),
+        scenario.texts(),
         corners.join(", ")
     );
-    let is_wall = |column: usize, row: usize| grid.at(column, row) == Cell::Occupied;
-    let mut walls = String::new();
-    for ring in outlines(grid.width, grid.height, STRAIGHT, is_wall) {
-        let ends = ring.iter().chain(ring.first()).copied().collect::<Vec<_>>();
-        for side in ends.windows(2) {
-            let [from, to] = side else { continue };
-            walls.push_str(&format!("  - {{start: {}, end: {}}}\n", point(placed(*from)), point(placed(*to))));
-        }
-    }
+    let wall = |[from, to]: [Point; 2]| format!("  - {{start: {}, end: {}}}\n", point(from), point(to));
+    let walls: String =
+        sides(grid, |column, row| grid.at(column, row) == Cell::Occupied).into_iter().map(wall).collect();
     text.push_str(&if walls.is_empty() { "  walls: []\n".to_owned() } else { format!("  walls:\n{walls}") });
     text.push_str(if location.doors.is_empty() { "  doors: []\n" } else { "  doors:\n" });
     for door in &location.doors {

@@ -10,7 +10,7 @@
 //! | ids | the robot is 0, `human_k` is k, where a format wants whole numbers |
 //! | names | letters, digits and `_` where a format allows no others; what is rewritten is noted |
 
-use socrates_model::{AgentId, AgentState, Recording, SimTime, time::STEP_NANOS};
+use socrates_model::{AgentId, AgentState, Point, Recording, SimTime, time::STEP_NANOS};
 
 use crate::graph::{Unusable, micro};
 use crate::not_carried::Losses;
@@ -20,6 +20,11 @@ pub(crate) fn real(value: f64) -> String {
     let text = format!("{:.6}", micro(value));
     let short = text.trim_end_matches('0');
     if short.ends_with('.') { format!("{short}0") } else { short.to_owned() }
+}
+
+/// A place as formats of YAML want it: `{x: 1.0, y: -0.25}`, m.
+pub(crate) fn point(at: Point) -> String {
+    format!("{{x: {}, y: {}}}", real(at.x), real(at.y))
 }
 
 /// An angle from -π to π, rad.

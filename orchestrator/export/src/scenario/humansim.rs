@@ -3,15 +3,15 @@
 //! The keys move with the program, which has no releases; what is written here are those that its own scenarios of commit 4160eb8 have.
 //! Unknown keys are passed over in silence.
 
-use socrates_model::{AgentId, Cell, Point};
+use socrates_model::{AgentId, Cell};
 
 use super::content::{Content, NEVER_SEEN, WORDS};
-use super::frames::{file_name, number, real};
+use super::frames::{file_name, number, point, real};
+use super::outline::sides;
 use super::routes::{self, SIMULATED, Walker};
 use super::{File, Files, Foreign, Format, Scenario};
 use crate::graph::Unusable;
 use crate::not_carried::Losses;
-use crate::outline::{STRAIGHT, outlines};
 
 /// Step of its simulation, s.
 const STEP_S: f64 = 0.05;
@@ -51,33 +51,21 @@ pub(super) const FORMAT: Format = Format {
 fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
     let name = file_name(&scenario.name, losses);
     let walkers = routes::walkers(scenario)?;
-    for place in Content::PeopleTracks.places(scenario) {
-        losses.note("ways of people tick by tick", place, SIMULATED);
-    }
-    let proposal = &scenario.proposal;
-    let told = [&proposal.title, &proposal.description, &proposal.robot.task, &proposal.robot.expected_behavior];
-    let told = told.into_iter().chain(proposal.humans.iter().map(|human| &human.behavior));
-    let told: Vec<&str> = told.map(String::as_str).filter(|text| !text.is_empty()).collect();
+    scenario.note_people(Content::PeopleTracks, "ways of people tick by tick", SIMULATED, losses);
     let length_s = routes::length_s(scenario);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a run is never so long")]
     let steps = if length_s > 0.0 { (length_s / STEP_S).ceil() as u64 } else { ENDLESS };
     let mut text = format!(
         "name: {name}\ndescription: {}\nsimulation:\n  seed: 1\n  dt: {}\n  bt_tick_interval: 5\n  max_ticks: {steps}\n  execution_mode: master\n",
-        // A text of JSON is one of YAML.
-        serde_json::Value::from(told.join(" / ")),
+        scenario.texts(),
         real(STEP_S)
     );
     text.push_str(&walls(scenario));
     text.push_str(if walkers.is_empty() { "agents: []\n" } else { "agents:\n" });
     for walker in &walkers {
         agent(&mut text, walker);
-        let at = || format!("paths.json {}", walker.agent);
-        if walker.legs.iter().any(|leg| leg.wait_s > 0.0) {
-            losses.note("waits of people", at(), "people walk from goal to goal without a stop");
-        }
-        if walker.from_s > 0.0 {
-            losses.note("absence of people", at(), "everybody is there from the beginning");
-        }
+        walker.note_waits("people walk from goal to goal without a stop", losses);
+        walker.note_absence(losses);
     }
     text.push_str("interaction_scripts: []\n");
     Ok(Files::from([(format!("{name}.yaml"), File::Text(text))]))
@@ -105,22 +93,14 @@ fn agent(text: &mut String, walker: &Walker) {
 /// Outlines of what is no floor.
 fn walls(scenario: &Scenario) -> String {
     let grid = &scenario.location.grid;
-    #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
-    let placed = |corner: (usize, usize)| grid.world_from_pixel(corner.0 as f64, corner.1 as f64);
-    let mut rows = String::new();
-    let mut count = 0;
-    for ring in outlines(grid.width, grid.height, STRAIGHT, |column, row| grid.at(column, row) != Cell::Free) {
-        let ends = ring.iter().chain(ring.first()).copied().collect::<Vec<_>>();
-        for side in ends.windows(2) {
-            let [from, to] = side else { continue };
-            let (from, to) = (point(placed(*from)), point(placed(*to)));
-            rows.push_str(&format!("  - {{name: wall_{count}, start: {from}, end: {to}}}\n"));
-            count += 1;
-        }
-    }
-    if count == 0 { "walls: []\n".to_owned() } else { format!("walls:\n{rows}") }
-}
-
-fn point(at: Point) -> String {
-    format!("{{x: {}, y: {}}}", real(at.x), real(at.y))
+    let sides = sides(grid, |column, row| grid.at(column, row) != Cell::Free);
+    let rows: String = sides
+        .iter()
+        .enumerate()
+        .map(|(count, side)| {
+            let [from, to] = side.map(point);
+            format!("  - {{name: wall_{count}, start: {from}, end: {to}}}\n")
+        })
+        .collect();
+    if rows.is_empty() { "walls: []\n".to_owned() } else { format!("walls:\n{rows}") }
 }

@@ -3,7 +3,7 @@
 //! Each package has the stage without people, which Isaac adds. No schema of the configurations can be had: keys are those of the
 //! published guides. Headings are in degrees, `_` is any heading.
 
-use socrates_model::AgentId;
+use socrates_model::{AgentId, Point};
 
 use super::content::{Content, WORDS};
 use super::frames::{file_name, real};
@@ -81,23 +81,15 @@ pub(super) const PEOPLE_6_1: Format = Format {
 
 /// People with what every generation leaves behind of them.
 fn people(scenario: &Scenario, losses: &mut Losses) -> Result<Vec<Walker>, Unusable> {
-    for place in Content::PeopleTracks.places(scenario) {
-        losses.note("ways of people tick by tick", place, SIMULATED);
-    }
+    scenario.note_people(Content::PeopleTracks, "ways of people tick by tick", SIMULATED, losses);
     let why = "Isaac bakes it from the stage: Window > Navigation > NavMesh, add a volume over the floor, and Bake";
     losses.note("mesh for navigation", "location.json grid", why);
     let people = routes::walkers(scenario)?;
     let people: Vec<Walker> = people.into_iter().filter(|walker| walker.agent != AgentId::Robot).collect();
     for walker in &people {
-        let at = || format!("paths.json {}", walker.agent);
-        losses.note(
-            "starts of people",
-            at(),
-            "Isaac puts characters anywhere on its mesh; they go to their start first",
-        );
-        if walker.from_s > 0.0 {
-            losses.note("absence of people", at(), "everybody is there from the beginning");
-        }
+        let why = "Isaac puts characters anywhere on its mesh; they go to their start first";
+        losses.note("starts of people", walker.place(), why);
+        walker.note_absence(losses);
     }
     Ok(people)
 }
@@ -121,12 +113,10 @@ fn write_commands(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unu
     let mut commands = String::new();
     for (place, walker) in people.iter().enumerate() {
         let character = if place == 0 { "Character".to_owned() } else { format!("Character_{place:02}") };
-        let mut go = |x: f64, y: f64| {
-            commands.push_str(&format!("{character} GoTo {} {} 0.0 _\n", real(x), real(y)));
-        };
-        go(walker.start.x, walker.start.y);
+        let go = |at: Point| format!("{character} GoTo {} {} 0.0 _\n", real(at.x), real(at.y));
+        commands.push_str(&go(walker.start.point()));
         for leg in &walker.legs {
-            commands.push_str(&format!("{character} GoTo {} {} 0.0 _\n", real(leg.at.x), real(leg.at.y)));
+            commands.push_str(&go(leg.at));
             if leg.wait_s > 0.0 {
                 commands.push_str(&format!("{character} Idle {}\n", real(leg.wait_s)));
             }
@@ -155,9 +145,7 @@ fn write_groups(scenario: &Scenario, losses: &mut Losses, version: &str) -> Resu
         if people.is_empty() { " {}" } else { "" }
     );
     for walker in &people {
-        if walker.legs.iter().any(|leg| leg.wait_s > 0.0) {
-            losses.note("waits of people", format!("paths.json {}", walker.agent), "a patrol has points without waits");
-        }
+        walker.note_waits("a patrol has points without waits", losses);
         let pace = real(walker.speed_mps);
         config.push_str(&format!(
             "      {}:\n        asset_path: {CHARACTERS}\n        num: 1\n        routines:\n        - patrol:\n            weight: 1.0\n            \

@@ -162,6 +162,15 @@ impl Scenario {
         robot.map_or(self.robot_radius_m, |info| info.radius_m)
     }
 
+    /// Its texts in one, as a string of JSON, which is one of YAML too.
+    fn texts(&self) -> serde_json::Value {
+        let proposal = &self.proposal;
+        let texts = [&proposal.title, &proposal.description, &proposal.robot.task, &proposal.robot.expected_behavior];
+        let texts = texts.into_iter().chain(proposal.humans.iter().map(|human| &human.behavior));
+        let texts: Vec<&str> = texts.map(String::as_str).filter(|text| !text.is_empty()).collect();
+        texts.join(" / ").into()
+    }
+
     /// Notes the places of a kind that a format holds of the robot alone.
     fn note_people(&self, content: Content, what: &str, why: &str, losses: &mut Losses) {
         for place in content.places(self).into_iter().filter(|place| !place.ends_with("robot")) {

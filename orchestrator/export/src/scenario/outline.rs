@@ -7,12 +7,22 @@ use socrates_model::{Cell, Grid, Point};
 use super::frames::real;
 use crate::graph::Unusable;
 use crate::not_carried::Losses;
-use crate::outline::{EXACT, outlines};
+use crate::outline::{Corner, EXACT, STRAIGHT, outlines, placed};
 
 /// Largest distance by which a place is moved to where there is room, m.
 const AWAY_M: f64 = 2.0;
 /// Least floor around a place, m.
 const LEAST_ROOM_M: f64 = 0.1;
+
+/// Both ends of each side of the straight outlines of the cells for which `inside` holds, in the map frame, m.
+pub(crate) fn sides(grid: &Grid, inside: impl Fn(usize, usize) -> bool) -> Vec<[Point; 2]> {
+    let mut sides = Vec::new();
+    for ring in outlines(grid.width, grid.height, STRAIGHT, inside) {
+        let next = ring.iter().cycle().skip(1);
+        sides.extend(ring.iter().zip(next).map(|(from, to)| [placed(grid, *from), placed(grid, *to)]));
+    }
+    sides
+}
 
 /// The floor that hangs together, in the map frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,9 +151,8 @@ pub(crate) fn walkable(grid: &Grid, losses: &mut Losses) -> Result<Floor, Unusab
     let outer = rings.iter().enumerate().max_by_key(|(place, ring)| (extent(ring), std::cmp::Reverse(*place)));
     let outer = outer.map_or(0, |(place, _)| place);
     rings.swap(0, outer);
-    #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
-    let placed = |corner: &(usize, usize)| grid.world_from_pixel(corner.0 as f64, corner.1 as f64);
-    let rings = rings.iter().map(|ring| ring.iter().chain(ring.first()).map(placed).collect());
+    let closed = |ring: &Vec<Corner>| ring.iter().chain(ring.first()).map(|corner| placed(grid, *corner)).collect();
+    let rings = rings.iter().map(closed);
     Ok(Floor { rings: rings.collect(), cells: free })
 }
 

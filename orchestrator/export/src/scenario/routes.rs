@@ -7,6 +7,7 @@ use socrates_model::{AgentId, AgentState, Point, Pose, time::STEP_SECS};
 
 use super::Scenario;
 use crate::graph::{Unusable, micro};
+use crate::not_carried::Losses;
 
 /// Within this distance somebody who waits moves, m.
 const STILL_M: f64 = 0.15;
@@ -53,6 +54,25 @@ impl Walker {
     /// Where the way ends.
     pub(crate) fn end(&self) -> Point {
         self.legs.last().map_or_else(|| self.start.point(), |leg| leg.at)
+    }
+
+    /// Where what a format leaves behind of them stood.
+    pub(crate) fn place(&self) -> String {
+        format!("paths.json {}", self.agent)
+    }
+
+    /// Notes the waits of somebody who has some, for a format without.
+    pub(crate) fn note_waits(&self, why: &str, losses: &mut Losses) {
+        if self.legs.iter().any(|leg| leg.wait_s > 0.0) {
+            losses.note("waits of people", self.place(), why);
+        }
+    }
+
+    /// Notes somebody who comes later, for a format in which everybody is there from the first tick.
+    pub(crate) fn note_absence(&self, losses: &mut Losses) {
+        if self.from_s > 0.0 {
+            losses.note("absence of people", self.place(), "everybody is there from the beginning");
+        }
     }
 }
 

@@ -73,9 +73,7 @@ pub(super) fn agents(
         }
         file.agents.push(agent);
     }
-    for place in Content::PeopleTracks.places(scenario) {
-        losses.note("ways of people tick by tick", place, super::SIMULATED);
-    }
+    scenario.note_people(Content::PeopleTracks, "ways of people tick by tick", super::SIMULATED, losses);
     Ok(file)
 }
 

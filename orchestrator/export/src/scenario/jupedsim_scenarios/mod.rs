@@ -74,9 +74,7 @@ fn write(scenario: &Scenario, losses: &mut Losses) -> Result<Files, Unusable> {
     for walker in &routes::walkers(scenario)? {
         config.add(walker, losses)?;
     }
-    for place in Content::PeopleTracks.places(scenario) {
-        losses.note("ways of people tick by tick", place, SIMULATED);
-    }
+    scenario.note_people(Content::PeopleTracks, "ways of people tick by tick", SIMULATED, losses);
     let length_s = routes::length_s(scenario);
     let longest_s = if length_s > 0.0 { length_s + LONGER_S } else { ALONE_S };
     let value = config.value(&name, longest_s);
