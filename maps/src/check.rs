@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{AreaName, Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Where};
+use socrates_model::{AreaName, Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Vector, Where};
 
 use crate::finding::{About, Finding};
 use crate::ground::Ground;
@@ -297,7 +297,18 @@ fn line_problems(location: &Location, door: &Door, fault: &mut impl FnMut(FaultC
     let along = (door.to - door.from).normalize();
     // Behind a thin wall that the door's line meets lies the floor of somebody else.
     let steps = (1..=DOOR_STEPS).map(|step| DOOR_SLACK_M * f64::from(step) / f64::from(DOOR_STEPS));
+    // The tip of a wall that bends away from the door's line stands right beside the end.
+    let beside_m = 1.5 * location.grid.resolution_m;
+    let touches = |end: &Point| {
+        (0..8_u32).any(|turn| {
+            let (sin, cos) = libm::sincos(f64::from(turn) * std::f64::consts::FRAC_PI_4);
+            !location.grid.is_free(&(end + Vector::new(cos, sin) * beside_m))
+        })
+    };
     for (end, outward) in [(door.from, -along), (door.to, along)] {
+        if touches(&end) {
+            continue;
+        }
         if steps.clone().all(|off_m| location.grid.is_free(&(end + outward * off_m))) {
             let message = format!(
                 "its end ({:.2}, {:.2}) m does not meet a wall within {DOOR_SLACK_M} m; the gap beside the door would stay open",

@@ -407,7 +407,10 @@ impl Bus for ZenohBus {
     }
 
     async fn close(&self) {
-        if let Err(_elapsed) = tokio::time::timeout(CLOSE_LIMIT, self.session.close()).await {
+        // On a task of its own: closing takes locks of the library, and one that it does not get must not hold its caller.
+        let session = self.session.clone();
+        let closing = tokio::spawn(async move { session.close().await });
+        if tokio::time::timeout(CLOSE_LIMIT, closing).await.is_err() {
             tracing::warn!(limit_s = CLOSE_LIMIT.as_secs(), "the bus did not close in time and was left");
         }
         let endings = std::mem::take(&mut *self.endings.lock().unwrap_or_else(PoisonError::into_inner));

@@ -33,6 +33,8 @@ const TONGUE_M: f64 = 0.45;
 /// The wall behind a jamb is measured so far from it, m: a wall in line with the opening has one thickness, a corner ever more, and
 /// a wall askew is left. At the last one another wall may meet it.
 const OUTWARD_M: [f64; 3] = [0.12, 0.25, 0.5];
+/// A wall may bend at the jamb, so it is looked for in these directions beside the line of the opening, rad.
+const BENDS_RAD: [f64; 5] = [0.0, 0.2, -0.2, 0.4, -0.4];
 /// Thicknesses that differ by less than this are one, m: what a cell makes of it.
 const EVEN_M: f64 = 0.12;
 /// Shoulders are measured up to so far, m.
@@ -126,13 +128,18 @@ impl Throat {
         if most < SHOULDER_M {
             return Jamb::Flush;
         }
-        let thick_m = OUTWARD_M.map(|off_m| thickness_m(floor, &(at + out * off_m), &self.ahead));
-        let [near_m, next_m, far_m] = thick_m;
-        // A thick wall has two faces that are as far apart as the opening is deep.
-        let even =
-            (next_m - near_m).abs() <= EVEN_M && next_m <= DEEPEST_M && (next_m - self.depth_m()).abs() <= 2.0 * EVEN_M;
-        let thin = near_m > 0.0 && next_m > 0.0 && far_m > 0.0 && (near_m.max(next_m) <= THIN_M || even);
-        match (thin, least >= SHOULDER_M) {
+        let goes_on = |bend: &f64| {
+            let (sin, cos) = libm::sincos(*bend);
+            let along = Vector::new(out.x * cos - out.y * sin, out.x * sin + out.y * cos);
+            let thick_m = OUTWARD_M.map(|off_m| thickness_m(floor, &(at + along * off_m), &self.ahead));
+            let [near_m, next_m, far_m] = thick_m;
+            // A thick wall has two faces that are as far apart as the opening is deep.
+            let even = (next_m - near_m).abs() <= EVEN_M
+                && next_m <= DEEPEST_M
+                && (next_m - self.depth_m()).abs() <= 2.0 * EVEN_M;
+            near_m > 0.0 && next_m > 0.0 && far_m > 0.0 && (near_m.max(next_m) <= THIN_M || even)
+        };
+        match (BENDS_RAD.iter().any(goes_on), least >= SHOULDER_M) {
             (true, _) => Jamb::End { tongue_m: least },
             (false, false) => Jamb::Step,
             (false, true) => Jamb::Corner,

@@ -191,6 +191,21 @@ mod annotation {
     }
 
     #[test]
+    fn a_wall_that_bends_at_its_door_has_a_doorway() {
+        // From both jambs of an opening of 1 m the wall goes on at 23° to the opening's line.
+        let bent = drawn(123, 52, 0.1, |column, row| {
+            let off = if row < 20 { 20 - row } else { row.saturating_sub(29) };
+            let middle = 60.0 - 0.42 * f64::from(u32::try_from(off).unwrap());
+            let wall = !(20..30).contains(&row) && (f64::from(u32::try_from(column).unwrap()) - middle).abs() < 1.2;
+            wall.then_some(Cell::Occupied)
+        });
+        let made = found(&bent);
+        assert_eq!((made.counts.rooms, made.counts.doors), (2, 1), "{:?}", made.counts);
+        let door = made.graph.nodes().iter().find(|node| node.kind == "DOORWAY").unwrap();
+        assert!((door.at - Point::new(6.0, 2.7)).norm() < 0.25, "{}", door.at);
+    }
+
+    #[test]
     fn the_gap_between_two_outlined_crates_is_no_door_and_that_of_a_booth_is_one() {
         // Outlines of one cell of 0.05 m with gaps, as scanners see crates; 1.2 m wide, 1.0 m between them.
         let outline = |column: usize, row: usize, left: usize, top: usize, side: usize| {

@@ -1,8 +1,11 @@
 //! The picture of one run: where everybody went, and when.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
-use socrates_model::{AgentId, EventKind, HumanId, Location, Paths, Point, Recording, Report, Verdict, ordinal};
+use socrates_model::{
+    AgentId, AgentState, EventKind, HumanId, Location, Paths, Point, Recording, Report, Verdict, ordinal,
+};
 
 use crate::label::{Area, Labels, text_width, wrapped, wrapped_beside};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
@@ -107,12 +110,7 @@ pub fn run_picture(
     }
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
     draw_scale(&mut svg, location, &frame, 18.0);
-    let more = if paths.is_some() { " · diamond: encounter · dots: intended way" } else { "" };
-    svg.text(
-        (width - 20.0, frame.at.1 + h + 22.0),
-        &format!("outline: start · filled: end · arrow: every {MARK_SECS:.0} s{more}"),
-        &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
-    );
+    draw_marks_told(&mut svg, location, (width - 20.0, frame.at.1 + h + 18.0), width - 190.0, paths.is_some());
     let legend: Vec<(u32, String)> = recording
         .header
         .agents
@@ -128,6 +126,28 @@ pub fn run_picture(
         .collect();
     draw_legend(&mut svg, &legend, width, head + h + 54.0);
     svg.finish()
+}
+
+/// Says what each mark means, in at most two lines that end at `at` and are no wider than `room`.
+fn draw_marks_told(svg: &mut Svg, location: &Location, at: (f64, f64), room: f64, planned: bool) {
+    const SIZE_PX: f64 = 13.0;
+    let every = format!("arrow: every {MARK_SECS:.0} s");
+    let told = [
+        (true, "outline: start"),
+        (true, "filled: end"),
+        (true, &every),
+        (planned, "diamond: robot and person nearest to each other"),
+        (planned, "dots: intended way"),
+        (!location.doors.is_empty(), "dashes: door"),
+        (true, "gray lines: ways of the map"),
+    ];
+    let told: Vec<&str> = told.into_iter().filter(|(drawn, _)| *drawn).map(|(_, what)| what).collect();
+    let style = format!("font-size=\"{SIZE_PX}\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET);
+    let mut y = at.1;
+    for line in wrapped(&told.join(" · "), room, SIZE_PX, 2) {
+        svg.text((at.0, y), line.trim_matches([' ', '·']), &style);
+        y += SIZE_PX + 3.0;
+    }
 }
 
 /// What the heading tells of a run: its verdict with the reason beside it, and what the robot did, in lines.
@@ -146,7 +166,9 @@ impl Told {
         let verdict = report.verdict.name().replace('_', " ");
         let pill = text_width(&verdict, 15.0) + 22.0;
         let room = |y: f64| if y > LOCATOR_PX.1 + 10.0 + LINE_PX { below } else { beside };
-        let reason = wrapped_beside(&report.verdict_text, |line| room(Self::y(line)) - pill - 12.0, 15.0, LINES);
+        // Names stand in `code` marks in texts; here there is nothing that would draw them.
+        let text = report.verdict_text.replace('`', "");
+        let reason = wrapped_beside(&text, |line| room(Self::y(line)) - pill - 12.0, 15.0, LINES);
         let robot = format!("{} · seed {}", report.robot_text, report.seed);
         let robot = wrapped_beside(&robot, |line| room(Self::robot_y(reason.len(), line)), 14.0, LINES);
         Self { color: if good { palette::GOOD } else { palette::BAD }, reason, robot, verdict, pill }
@@ -261,7 +283,7 @@ pub(crate) fn several(recording: &Recording) -> BTreeSet<HumanId> {
     recording.events.iter().filter_map(|event| again(&event.kind)).collect()
 }
 
-/// An encounter on the map: where the robot was, who met it and when.
+/// An encounter on the map: the middle between the robot and the person where they were nearest, who that was and when.
 #[derive(Debug, Clone, PartialEq)]
 struct Met {
     at: (f64, f64),
@@ -272,6 +294,21 @@ struct Met {
 /// Half the height of the diamond of an encounter, px.
 const DIAMOND_PX: f64 = 8.0;
 
+/// Where the robot and a human are nearest to each other in these ticks, with the first such tick; none where one of them is never there.
+fn nearest(recording: &Recording, human: HumanId, ticks: Range<usize>) -> Option<(usize, Point, Point)> {
+    let there = There::of(recording);
+    let of = |states: &[AgentState], agent: u32| {
+        states.iter().find(|state| state.agent == agent && there.is(state)).map(AgentState::point)
+    };
+    let both = ticks.filter_map(|tick| {
+        let states = recording.tick(tick);
+        Some((tick, of(states, 0)?, of(states, human.number())?))
+    });
+    both.min_by(|(_, a, b), (_, c, d)| (a - b).norm().total_cmp(&(c - d).norm()))
+}
+
+/// Draws each encounter where the two were nearest to each other, with a line between them. Of several with one human each has the
+/// ticks that are nearer to it than to the others.
 fn draw_encounters(
     svg: &mut Svg,
     location: &Location,
@@ -280,12 +317,25 @@ fn draw_encounters(
     labels: &mut Labels,
 ) -> Vec<Met> {
     let again = several(recording);
+    let encounters: Vec<(HumanId, u32, usize)> = recording
+        .events
+        .iter()
+        .filter_map(|event| {
+            let EventKind::Encounter { human, nth, .. } = &event.kind else { return None };
+            Some((*human, *nth, usize::try_from(event.time.tick()).unwrap_or(usize::MAX)))
+        })
+        .collect();
     let mut met = Vec::new();
-    for event in &recording.events {
-        let EventKind::Encounter { human, nth, .. } = &event.kind else { continue };
-        let tick = usize::try_from(event.time.tick()).unwrap_or(usize::MAX);
-        let Some(robot) = recording.tick(tick).iter().find(|state| state.agent == 0) else { continue };
-        let (x, y) = frame.px(location, &robot.point());
+    for (human, nth, tick) in &encounters {
+        let own = encounters.iter().filter(|(other, ..)| other == human).map(|(.., at)| *at);
+        let before = own.clone().filter(|at| at < tick).max().map_or(0, |at| usize::midpoint(at, *tick));
+        let after = own.filter(|at| at > tick).min().map_or_else(|| recording.ticks(), |at| usize::midpoint(at, *tick));
+        let Some((tick, robot, person)) = nearest(recording, *human, before..after) else { continue };
+        let (from, to) = (frame.px(location, &robot), frame.px(location, &person));
+        let (x, y) = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        // Both ends: on crossing tracks nothing else tells who was where at that time.
+        svg.line(from, to, "stroke=\"#ffffff\" stroke-width=\"3.4\" stroke-opacity=\"0.8\"");
+        svg.line(from, to, &format!("stroke=\"{}\" stroke-width=\"1.4\"", palette::human(human.number())));
         svg.raw(&format!(
             "<path class=\"encounter\" d=\"M{x:.1} {:.1}l8 8l-8 8l-8 -8z\" fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"1.4\"/>",
             y - DIAMOND_PX,
@@ -293,7 +343,9 @@ fn draw_encounters(
         ));
         labels.block(Area { x: x - DIAMOND_PX, y: y - DIAMOND_PX, w: 2.0 * DIAMOND_PX, h: 2.0 * DIAMOND_PX });
         let which = if again.contains(human) { format!("{}: ", ordinal(*nth)) } else { String::new() };
-        met.push(Met { at: (x, y), human: *human, words: format!("{which}{:.1} s", event.time.secs()) });
+        #[expect(clippy::cast_precision_loss, reason = "a run has far fewer than 2^53 ticks")]
+        let secs = tick as f64 * recording.header.step_s;
+        met.push(Met { at: (x, y), human: *human, words: format!("{which}{secs:.1} s") });
     }
     met
 }
@@ -356,11 +408,14 @@ mod tests {
         let svg = run_picture(&hall("hall"), &run, None, None, "a run");
         let written = written(&svg);
         let marks = svg.lines().filter(|line| line.contains("class=\"encounter\""));
-        for (time, path) in ["3.0 s", "3.1 s", "3.2 s"].into_iter().zip(marks) {
+        for (n, path) in (1..=3_u32).zip(marks) {
+            let (tick, ..) = nearest(&run, HumanId::new(n), 0..run.ticks()).unwrap();
+            let time = format!("{:.1} s", f64::from(u32::try_from(tick).unwrap()) * run.header.step_s);
             let (x, y) = path.split_once(" d=\"M").unwrap().1.split_once('l').unwrap().0.split_once(' ').unwrap();
             let (x, y): (f64, f64) = (x.parse().unwrap(), y.parse::<f64>().unwrap() + DIAMOND_PX);
-            let (_, area) = written.iter().find(|(words, _)| words == time).unwrap();
-            let away = (x - x.clamp(area.x, area.x + area.w)).hypot(y - y.clamp(area.y, area.y + area.h));
+            let away = |area: &Area| (x - x.clamp(area.x, area.x + area.w)).hypot(y - y.clamp(area.y, area.y + area.h));
+            let own = written.iter().filter(|(words, _)| *words == time).map(|(_, area)| away(area));
+            let away = own.min_by(f64::total_cmp).unwrap();
             // A pixel of a drawing is 25.4 / 96 mm.
             assert!(away * 25.4 / 96.0 < 9.0, "{time} stands {away:.0} px from its mark");
         }
@@ -369,6 +424,18 @@ mod tests {
                 assert!(a.overlap(b) < 4.0, "`{one}` and `{other}`");
             }
         }
+    }
+
+    #[test]
+    fn an_encounter_is_drawn_where_both_were_nearest() {
+        let run = walk(1);
+        let (tick, robot, person) = nearest(&run, HumanId::new(1), 0..run.ticks()).unwrap();
+        let apart = |tick: usize| {
+            let states = run.tick(tick);
+            (states[0].point() - states[1].point()).norm()
+        };
+        assert!((0..run.ticks()).all(|other| apart(other) >= (robot - person).norm() - 1e-12), "{tick}");
+        assert!(nearest(&run, HumanId::new(7), 0..run.ticks()).is_none(), "nobody is there");
     }
 
     #[test]

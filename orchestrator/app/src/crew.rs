@@ -10,7 +10,7 @@ use socrates_kit::Stop;
 use tokio::io::AsyncReadExt as _;
 use tokio::process::{Child, ChildStdin};
 use tokio::sync::{mpsc, watch};
-use tokio::task::JoinHandle;
+use tokio::task::{AbortHandle, JoinHandle};
 use tokio::time::Instant;
 
 use crate::child::{command, ended, leave};
@@ -23,6 +23,9 @@ const SUDDEN: u32 = 3;
 const PAUSE: Duration = Duration::from_millis(50);
 /// Longest such pause.
 const LONGEST_PAUSE: Duration = Duration::from_secs(2);
+/// Longest time in which children that are asked to leave at once are gone. Each is killed much earlier: this is for one whose end
+/// is never reported, so that a run whose bundle is written ends.
+const GONE_LIMIT: Duration = Duration::from_secs(15);
 /// Most of what a child says at its end that is read, bytes.
 const LAST_WORDS: u64 = 64 * 1024;
 /// Pools of memory of a process, for the C library of most Linux systems: with one for each of its threads a worker keeps twice
@@ -55,10 +58,19 @@ impl Crew {
         Ok(())
     }
 
-    /// Asks the children to leave at once, and waits until they have.
+    /// Asks the children to leave at once, and waits until they have; a child that is not seen to leave is killed.
     pub(crate) async fn leave(self) {
+        self.leave_within(GONE_LIMIT).await;
+    }
+
+    async fn leave_within(self, limit: Duration) {
         self.stop.send_replace(Stop::Now);
-        self.ended().await;
+        let keepers: Vec<AbortHandle> = self.keepers.iter().map(JoinHandle::abort_handle).collect();
+        if tokio::time::timeout(limit, self.ended()).await.is_err() {
+            tracing::warn!(limit_s = limit.as_secs(), "children were not seen to leave, and are killed");
+            // Whoever keeps a child owns it, and a child whose owner is dropped is killed.
+            keepers.iter().for_each(AbortHandle::abort);
+        }
     }
 
     /// Asks the children to finish what they hold and to leave.
@@ -204,6 +216,18 @@ async fn keep(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[tokio::test]
+    async fn a_crew_is_left_whose_end_nobody_reports() {
+        let mut crew = Crew::new();
+        let (held, dropped) = tokio::sync::oneshot::channel::<()>();
+        crew.keepers.push(tokio::spawn(async move {
+            std::future::pending::<()>().await;
+            drop(held);
+        }));
+        crew.leave_within(Duration::from_millis(1)).await;
+        assert!(dropped.await.is_err(), "what the keeper owned is dropped");
+    }
 
     #[test]
     fn a_child_that_dies_again_and_again_is_started_ever_later() {

@@ -93,8 +93,11 @@ impl Supervisor {
     /// Ends the children and the bus: the workers first, so that they can hand back what they hold.
     pub(crate) async fn stop(self) {
         self.workers.leave().await;
+        tracing::debug!("the workers left");
         self.orchestrator.leave().await;
+        tracing::debug!("the orchestrator left");
         self.bus.close().await;
+        tracing::debug!("the bus is closed");
         drop(std::fs::remove_file(self.work.join(ENDPOINT_FILE)));
     }
 }

@@ -42,19 +42,34 @@ impl Lift {
         x.abs() <= self.width_m * 0.5 && y.abs() <= self.depth_m * 0.5
     }
 
-    /// Both ends of each door, map frame, m.
+    /// Both ends of each door, map frame, m. A door stands a little before its cabin; its line is in the wall that it opens.
     pub(super) fn door_lines(&self) -> Vec<(Point, Point)> {
+        let (w, d) = self.half_sides();
+        let in_wall = |off: f64, wall: f64| {
+            let near = (off.abs() - wall).abs() <= CUT_M;
+            if near { wall.copysign(off) } else { off }
+        };
         let ends = |(at, width, turn): &(Point, f64, f64)| {
             let (sin, cos) = libm::sincos(*turn);
             let half = width * 0.5;
+            let at = if cos.abs() > sin.abs() {
+                Point::new(at.x, in_wall(at.y, d))
+            } else {
+                Point::new(in_wall(at.x, w), at.y)
+            };
             let end = |side: f64| self.map_from_cabin(Point::new(at.x + side * half * cos, at.y + side * half * sin));
             (end(-1.0), end(1.0))
         };
         self.doors.iter().map(ends).collect()
     }
 
+    /// From the middle of the cabin to the middles of its walls, m.
+    fn half_sides(&self) -> (f64, f64) {
+        ((self.width_m + WALL_M) * 0.5, (self.depth_m + WALL_M) * 0.5)
+    }
+
     fn sides(&self) -> Vec<(Point, Point)> {
-        let (w, d) = (self.width_m * 0.5 + WALL_M * 0.5, self.depth_m * 0.5 + WALL_M * 0.5);
+        let (w, d) = self.half_sides();
         let corners = [(-w, -d), (w, -d), (w, d), (-w, d)].map(|(x, y)| self.map_from_cabin(Point::new(x, y)));
         corners.iter().copied().zip(corners.iter().copied().cycle().skip(1)).collect()
     }
@@ -198,5 +213,31 @@ fn keep(grid: &mut Grid, seeds: &[Point]) {
         if *number > 0 && !kept.contains(number) {
             *cell = Cell::Unknown;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_of_a_cabins_door_is_in_the_wall_that_it_opens() {
+        let doors = vec![(Point::new(0.0, 1.62), 1.4, 0.0), (Point::new(-1.3, 0.2), 1.0, std::f64::consts::FRAC_PI_2)];
+        let lift = Lift {
+            name: "lift_1".into(),
+            middle: Point::new(10.0, 5.0),
+            yaw: 0.0,
+            width_m: 2.4,
+            depth_m: 3.0,
+            doors: [doors, vec![(Point::new(0.0, 3.0), 1.0, 0.0)]].concat(),
+        };
+        let near = |(a, b): (Point, Point), c: (f64, f64), d: (f64, f64)| {
+            assert!((a - Point::new(c.0, c.1)).norm() < 1e-9 && (b - Point::new(d.0, d.1)).norm() < 1e-9, "{a} {b}");
+        };
+        let lines = lift.door_lines();
+        near(lines[0], (9.3, 6.55), (10.7, 6.55));
+        near(lines[1], (8.75, 4.7), (8.75, 5.7));
+        // What is not at the cabin stays where it is.
+        near(lines[2], (9.5, 8.0), (10.5, 8.0));
     }
 }
