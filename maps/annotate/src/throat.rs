@@ -35,6 +35,8 @@ const TONGUE_M: f64 = 0.45;
 const OUTWARD_M: [f64; 3] = [0.12, 0.25, 0.5];
 /// A wall may bend at the jamb, so it is looked for in these directions beside the line of the opening, rad.
 const BENDS_RAD: [f64; 5] = [0.0, 0.2, -0.2, 0.4, -0.4];
+/// A wall that bends goes on for at least this, m: an askew wall does, the side of a thing beside the opening does not.
+const BENT_M: f64 = 0.9;
 /// Thicknesses that differ by less than this are one, m: what a cell makes of it.
 const EVEN_M: f64 = 0.12;
 /// Shoulders are measured up to so far, m.
@@ -137,7 +139,8 @@ impl Throat {
             let even = (next_m - near_m).abs() <= EVEN_M
                 && next_m <= DEEPEST_M
                 && (next_m - self.depth_m()).abs() <= 2.0 * EVEN_M;
-            near_m > 0.0 && next_m > 0.0 && far_m > 0.0 && (near_m.max(next_m) <= THIN_M || even)
+            let long = bend.abs() < 1e-9 || thickness_m(floor, &(at + along * BENT_M), &self.ahead) > 0.0;
+            near_m > 0.0 && next_m > 0.0 && far_m > 0.0 && long && (near_m.max(next_m) <= THIN_M || even)
         };
         match (BENDS_RAD.iter().any(goes_on), least >= SHOULDER_M) {
             (true, _) => Jamb::End { tongue_m: least },
