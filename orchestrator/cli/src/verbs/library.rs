@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 use socrates_app::config::Config;
 use socrates_app::labels::{Blind, CompareOptions, PageOptions};
 use socrates_app::library_coverage::{self, CoverageOptions};
+use socrates_app::library_diversity::{self, DiversityOptions};
 use socrates_app::merge::{self, MergeOptions};
 use socrates_app::output::Printer;
 use socrates_app::query::{self, Condition, QueryOptions};
@@ -61,6 +62,19 @@ enum LibraryVerb {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Print how different the scenarios of a library are: edits of the nodes that robot and people pass, and time warping of the robot's
+    /// tracks, over all pairs on one location and for each scenario's nearest.
+    Diversity {
+        /// Libraries, bundles, or folders that hold bundles.
+        #[arg(required = true)]
+        what: Vec<PathBuf>,
+        /// Scenarios that are compared, at most; of more, as many that are evenly spread over the list.
+        #[arg(long, value_name = "N", default_value_t = 200)]
+        most: usize,
+        /// Write every pair as a table too (`.csv`).
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Write page and tables of a library anew; of more than 1000 scenarios several pages that lead to each other.
     Gallery {
         /// Folder of the library.
@@ -110,6 +124,10 @@ impl Library {
             LibraryVerb::Coverage { library, out } => {
                 let (library, out) = (library.clone(), out.clone());
                 library_coverage::coverage(talk, &CoverageOptions { library, out })
+            }
+            LibraryVerb::Diversity { what, most, out } => {
+                let (what, most, out) = (what.clone(), *most, out.clone());
+                done(library_diversity::diversity(talk, &DiversityOptions { what, most, out }))
             }
             LibraryVerb::Gallery { library } => done(report::report(talk, library)),
             LibraryVerb::Query { library, conditions, columns, paths, out } => {
