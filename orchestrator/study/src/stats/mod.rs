@@ -26,7 +26,7 @@ pub use friedman::{Friedman, friedman, friedman_by_chi2};
 pub use holm::holm;
 pub use mixed::{Balanced, balanced_mixed};
 pub use ordinal::{Ordinal, Term, ordinal};
-pub use paired::{BradleyTerry, Equivalence, bradley_terry, cliffs_delta, equivalence};
+pub use paired::{BradleyTerry, Davidson, Equivalence, bradley_terry, cliffs_delta, davidson, equivalence};
 pub use rank::{kendall, midranks, spearman};
 pub use reliability::{Alpha, Icc, Iccs, cronbach, icc, omega};
 pub use wilcoxon::{Wilcoxon, Zeros, wilcoxon};
