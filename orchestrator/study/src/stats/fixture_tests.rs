@@ -39,6 +39,16 @@ fn friedman_with_ties_and_exactly() {
 }
 
 #[test]
+fn pairs_after_friedman_by_conover_and_nemenyi() {
+    // scikit-posthocs 0.17.1; B − A, C − A, C − B.
+    let found = posthoc(&first_item()).unwrap();
+    for (one, right) in found.iter().zip([(0.099_262, 0.289_666), (0.429_696, 0.759_287), (0.018_046, 0.069_530)]) {
+        near(one.conover.unwrap(), right.0, 1e-6);
+        near(one.nemenyi, right.1, 1e-6);
+    }
+}
+
+#[test]
 fn wilcoxon_by_both_rules() {
     let table = first_item();
     let less = |i: usize, j: usize| table.row_iter().map(|row| row[i] - row[j]).collect::<Vec<_>>();
