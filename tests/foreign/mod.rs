@@ -12,6 +12,7 @@ mod graphs;
 mod live;
 mod looks;
 pub(crate) mod models;
+mod observers;
 mod python;
 mod readers;
 mod strangers;

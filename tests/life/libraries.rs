@@ -96,5 +96,15 @@ fn a_killed_library_holds_whole_bundles_and_the_same_command_makes_the_rest() {
     let read = |path: &Path| std::fs::read_to_string(path).unwrap();
     let made = (read(&page), read(&table));
     assert_eq!(socrates(folder.path(), "page", &["report", "library"]).code, 0);
+    let args = ["--format", "json", "library", "diversity", "library", "--out", "pairs.csv"];
+    let told = socrates(folder.path(), "diversity", &args);
+    assert_eq!(told.code, 0, "{}", told.err);
+    let (told, pairs) = (told.json(), std::fs::read_to_string(folder.path().join("pairs.csv")).unwrap());
+    let count: u64 = told["locations"].as_array().unwrap().iter().map(|place| place["pairs"].as_u64().unwrap()).sum();
+    assert!(count > 0 && pairs.lines().count() as u64 == count + 1, "{told}");
+    let least = &told["locations"][0]["distances"]["track_m"]["pairs"][0];
+    assert!(least.as_f64().is_some_and(|least| least >= 0.0), "{told}");
+    let odd = socrates(folder.path(), "odd", &["library", "diversity", "library", "--most", "1"]);
+    assert!(odd.code == 2 && odd.err.contains("`--most 1` leaves no pair"), "{}", odd.err);
     assert_eq!((read(&page), read(&table)), made);
 }

@@ -24,6 +24,7 @@ mod live;
 mod map_edit;
 mod maps;
 mod no_ways;
+pub(crate) mod observers;
 mod observing;
 mod originals;
 mod pages;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 use socrates_model::FaultCode;
+use socrates_scoring::metrics::peers::{self, Name};
 use socrates_scoring::metrics::{CATALOG, Direction, Family, Sheet};
 
 use crate::bundle;
@@ -28,13 +29,23 @@ fn metrics(talk: &Printer) {
             rows.push(json!({ "id": sheet.id, "unit": sheet.unit, "online": family.waits().is_none() }));
         }
     }
+    for name in peers::NAMES {
+        talk.line(&format!("{:<58} is {}", name.name, name.ours));
+    }
+    let names: Vec<_> = peers::NAMES.iter().map(|name| json!({ "name": name.name, "is": name.ours })).collect();
     let signature = socrates_scoring::metrics::signature();
     talk.line(&format!("thresholds {signature}"));
-    talk.result(&json!({ "metrics": rows, "thresholds": signature }));
+    talk.result(&json!({ "metrics": rows, "names": names, "thresholds": signature }));
 }
 
-/// Prints the fact sheet of a metric.
-fn metric(talk: &Printer, family: &Family, sheet: &Sheet) {
+/// Prints the fact sheet of a metric, by its own name or by that of another tool.
+fn metric(talk: &Printer, family: &Family, sheet: &Sheet, name: Option<&Name>) {
+    if let Some(name) = name {
+        talk.line(&format!("{} is {}", name.name, name.ours));
+        if !name.differs.is_empty() {
+            talk.line(&format!("differs    {}", name.differs));
+        }
+    }
     talk.line(&format!("{} ({}, version {})", sheet.id, sheet.unit, sheet.version()));
     talk.line(sheet.about);
     let better = match sheet.direction {
@@ -52,7 +63,7 @@ fn metric(talk: &Printer, family: &Family, sheet: &Sheet) {
     let thresholds: serde_json::Map<String, serde_json::Value> =
         family.thresholds.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
     talk.result(&json!({
-        "metric": sheet.id, "unit": sheet.unit, "about": sheet.about, "direction": sheet.direction.sign(),
+        "metric": sheet.id, "asked": name.map(|name| name.name), "differs": name.map(|name| name.differs), "unit": sheet.unit, "about": sheet.about, "direction": sheet.direction.sign(),
         "source": sheet.source, "version": sheet.version(), "online": family.waits().is_none(),
         "waits": family.waits(), "thresholds": thresholds,
     }));
@@ -81,7 +92,7 @@ fn words(talk: &Printer) {
 
 /// What there is a page for.
 enum Page {
-    Metric(&'static Family, &'static Sheet),
+    Metric(&'static Family, &'static Sheet, Option<&'static Name>),
     Fault(FaultCode),
     Word(socrates_model::words::Word),
     Coverage(&'static str, &'static str),
@@ -91,7 +102,9 @@ enum Page {
 fn page(text: &str) -> Option<Page> {
     let id = text.trim().trim_matches('`').to_lowercase().replace([' ', '-'], "_");
     let mut sheets = CATALOG.iter().flat_map(|family| family.sheets.iter().map(move |sheet| (family, sheet)));
-    let metric = sheets.find(|(_, sheet)| sheet.id == id).map(|(family, sheet)| Page::Metric(family, sheet));
+    let name = peers::ours(&id);
+    let meant = name.map_or(id.as_str(), |name| name.ours);
+    let metric = sheets.find(|(_, sheet)| sheet.id == meant).map(|(family, sheet)| Page::Metric(family, sheet, name));
     let code = || text.trim().to_uppercase().parse().ok().map(Page::Fault);
     let covered = || {
         let mut words = crate::coverage::WORDS.iter();
@@ -106,6 +119,7 @@ fn near(text: &str) -> Vec<String> {
     let words = socrates_model::words::words();
     let known = FaultCode::ALL.iter().map(|code| code.code().to_owned());
     let known = known.chain(CATALOG.iter().flat_map(|family| family.sheets).map(|sheet| sheet.id.to_owned()));
+    let known = known.chain(peers::NAMES.iter().map(|name| name.name.to_owned()));
     let known = known.chain(crate::coverage::WORDS.iter().map(|(name, _)| (*name).to_owned()));
     let known = known.chain(words.iter().flat_map(|word| &word.names).map(|name| (*name).to_owned()));
     let mut all: Vec<(f64, String)> = known
@@ -139,7 +153,7 @@ pub fn explain(talk: &Printer, what: &[String]) -> Result<(), Complaint> {
         _ => {}
     }
     match page(&what) {
-        Some(Page::Metric(family, sheet)) => metric(talk, family, sheet),
+        Some(Page::Metric(family, sheet, name)) => metric(talk, family, sheet, name),
         Some(Page::Fault(code)) => {
             talk.line(code.page().trim_end());
             talk.result(&json!({ "code": code.code(), "about": code.about(), "page": code.page() }));
@@ -336,6 +350,16 @@ mod tests {
         }
         found.retain(|words| !words.is_empty() && !words.contains(['{', '$', '(']));
         found.into_iter().map(|words| words.trim_end_matches(", median").to_owned()).collect()
+    }
+
+    #[test]
+    fn names_of_other_tools_lead_to_the_metric_that_they_mean() {
+        let Some(Page::Metric(_, sheet, Some(name))) = page("`Arena.Path_Length`") else { panic!("no page") };
+        assert_eq!((sheet.id, name.name), ("path_length", "arena.path_length"));
+        assert!(name.differs.contains("origin"), "{}", name.differs);
+        let Some(Page::Metric(_, sheet, None)) = page("sean.completed") else { panic!("no page") };
+        assert_eq!(sheet.id, "sean.completed");
+        assert!(near("socnavbench.path_lenght").contains(&"socnavbench.path_length".to_owned()));
     }
 
     #[test]

@@ -1,8 +1,9 @@
-//! `labels page` and `labels compare`: a page on which people, or blind judges, label the runs of bundles, and what came of it.
+//! `labels`: pages on which people, blind judges or observers say what they see of the runs of bundles, and what came of it.
 //!
 //! ```text
 //! bundles ─┬─► page                                         ─► a table of answers ─► `dev agreement`
-//!          └─► blind: page, stills, texts, protocol, key.csv ─► tables of answers ─► compare
+//!          ├─► blind: page, stills, texts, protocol, key.csv ─► tables of answers ─► compare
+//!          └─► observe: page with sliders, beliefs, pairs; key  ─► tables of answers ─► observed
 //! ```
 
 mod answers;
@@ -10,6 +11,9 @@ mod blind;
 mod compare;
 mod door;
 mod key;
+mod observe;
+mod observed;
+mod task;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -23,6 +27,8 @@ use socrates_model::{Recording, Request, ScenarioId, Verdict};
 
 pub use self::blind::Blind;
 pub use self::compare::{CompareOptions, compare};
+pub use self::observe::{ObserveOptions, observe};
+pub use self::observed::{ObservedOptions, observed};
 use crate::batch;
 use crate::bundle;
 use crate::exit::Complaint;

@@ -68,6 +68,7 @@ pub mod keys;
 pub mod labels;
 pub mod layout;
 pub mod library_coverage;
+pub mod library_diversity;
 mod library_index;
 pub mod logs;
 mod loopback;

@@ -33,7 +33,13 @@ for (scenario in unique(ours$scenario)) for (dimension in unique(ours$dimension[
   check(scenario, dimension, "friedman_chi2", "", unname(found$statistic), 1e-6)
   check(scenario, dimension, "friedman_p", "", found$p.value, 1e-6)
   check(scenario, dimension, "kendall_w", "", unname(found$statistic) / (nrow(table) * (ncol(table) - 1)), 1e-6)
+  ranks <- t(apply(table, 1, rank))
+  n <- nrow(ranks); k <- ncol(ranks); sums <- colSums(ranks); df <- (n - 1) * (k - 1)
+  left <- sqrt(2 * n * (sum(ranks^2) - sum(sums^2) / n) / df)
   for (j in seq_along(shown)) for (i in seq_len(j - 1)) {
+    both <- paste(shown[j], "-", shown[i])
+    if (left > 1e-9) check(scenario, dimension, "conover_p", both, 2 * pt(abs(sums[j] - sums[i]) / left, df, lower.tail = FALSE), 1e-6)
+    check(scenario, dimension, "nemenyi_p", both, ptukey(abs(sums[j] - sums[i]) / n / sqrt(k * (k + 1) / (12 * n)), k, Inf, lower.tail = FALSE), 1e-6)
     d <- round(table[, j] - table[, i], 9)
     kept <- d[d != 0]
     exact <- length(kept) <= 25 && length(kept) == length(d) && !anyDuplicated(abs(d))

@@ -155,8 +155,12 @@ pub fn results_csv(results: &Results) -> String {
             add("kendall_w", "", of.w);
         }
         for pair in &cell.pairs {
-            let Ok(of) = &pair.test else { continue };
             let which = format!("{} - {}", pair.first, pair.against);
+            if let Ok((conover, nemenyi)) = &pair.posthoc {
+                conover.iter().for_each(|p| add("conover_p", &which, *p));
+                add("nemenyi_p", &which, *nemenyi);
+            }
+            let Ok(of) = &pair.test else { continue };
             add("wilcoxon_p_dropped", &which, of.p_dropped);
             add("wilcoxon_p_pratt", &which, of.p);
         }

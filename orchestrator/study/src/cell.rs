@@ -9,7 +9,7 @@ use crate::design::{Design, Dimension};
 use crate::rating::{Rating, Row};
 use crate::stats::{
     Clustered, Level, NoValue, Zeros, balanced_mixed, bradley_terry, chi_upper, clustered_bca, cronbach, equivalence,
-    float, friedman, icc, krippendorff, omega, ordinal, wilcoxon,
+    float, friedman, icc, krippendorff, omega, ordinal, posthoc, wilcoxon,
 };
 
 /// A figure, or why there is none.
@@ -103,6 +103,8 @@ pub struct Pair {
     pub against: String,
     /// The tests, by Pratt's rule.
     pub test: Figure<PairFigure>,
+    /// p by Conover (none where all people have one order) and by Nemenyi, from the ranks of all planners.
+    pub posthoc: Figure<(Option<f64>, f64)>,
     /// Equivalence, where the study declares a margin: mean difference, interval, p.
     pub equivalence: Option<Figure<(f64, f64, f64, f64)>>,
 }
@@ -312,6 +314,7 @@ fn score_of(
 
 fn pairs(design: &Design, planners: &[String], table: &DMatrix<f64>) -> Vec<Pair> {
     let mut found = Vec::new();
+    let ranked = posthoc(table);
     for (later, first) in planners.iter().enumerate() {
         for (earlier, against) in planners.iter().enumerate().take(later) {
             let differences: Vec<f64> =
@@ -336,8 +339,15 @@ fn pairs(design: &Design, planners: &[String], table: &DMatrix<f64>) -> Vec<Pair
                         .map(|of| (of.mean, of.interval.0, of.interval.1, of.p)),
                 )
             };
+            let of_both =
+                ranked.as_ref().map(|all| all.iter().find(|one| one.first == later && one.against == earlier));
+            let posthoc = match of_both {
+                Ok(Some(one)) => Ok((one.conover, one.nemenyi)),
+                Ok(None) => Err("not compared".to_owned()),
+                Err(why) => Err(why.to_string()),
+            };
             let (first, against) = (first.clone(), against.clone());
-            found.push(Pair { first, against, test: told(test), equivalence: design.margin.map(same) });
+            found.push(Pair { first, against, test: told(test), posthoc, equivalence: design.margin.map(same) });
         }
     }
     found

@@ -6,6 +6,7 @@
 //! study.toml ─► kit ─► survey page, files of other survey programs, the book of answers
 //! instruments (data) ─► score ─┘                              plan ─► power, orders, time, pay
 //!                                  └─► correlate ◄─ metrics of the runs that films show
+//! sliders, beliefs and pairs of observers ─► observe ─► who is kept, agreement, means of films, what a viewer knew when, strengths
 //! stats: reliability, agreement, ranks, mixed ordinal model, paired comparison, bootstrap; numbers in, numbers out
 //! ```
 //!
@@ -20,6 +21,7 @@ pub mod design;
 pub mod exclude;
 pub mod instrument;
 pub mod kit;
+pub mod observe;
 pub mod page;
 pub mod plan;
 mod problem;

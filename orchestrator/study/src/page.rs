@@ -271,19 +271,21 @@ fn figures(out: &mut String, cell: &Cell) {
 }
 
 fn pairs(out: &mut String, cell: &Cell) {
-    out.push_str("<div class=scroll><table><tr><th>pair<th>shift [95 %]<th>z<th>p<th>p<sub>Holm</sub><th>r<th>rank-biserial<th>no difference<th>equivalence</tr>");
+    out.push_str("<div class=scroll><table><tr><th>pair<th>shift [95 %]<th>z<th>p<th>p<sub>Holm</sub><th>p<sub>Conover</sub><th>p<sub>Nemenyi</sub><th>r<th>rank-biserial<th>no difference<th>equivalence</tr>");
     for pair in &cell.pairs {
         let name = format!("{} − {}", html(&pair.first), html(&pair.against));
         let same = pair.equivalence.as_ref().map_or_else(
             || "<span class=why>no margin declared</span>".to_owned(),
             |same| or_why(same, |of| format!("p {}", p_of(of.3))),
         );
+        let (conover, nemenyi) = pair.posthoc.as_ref().map_or((None, None), |of| (of.0, Some(of.1)));
+        let [conover, nemenyi] = [conover, nemenyi].map(|p| p.map_or_else(|| "–".to_owned(), p_of));
         match &pair.test {
             Ok(of) => {
                 let (shift, low, high) = of.shift;
                 put!(
                     out,
-                    "<tr><td>{name}<td class=n>{shift:.2} [{low:.2}, {high:.2}]<td class=n>{:.2}<td class=n>{}<td class=n>{}<td class=n>{:.2}<td class=n>{:.2}<td class=n>{} of {}<td class=n>{same}</tr>",
+                    "<tr><td>{name}<td class=n>{shift:.2} [{low:.2}, {high:.2}]<td class=n>{:.2}<td class=n>{}<td class=n>{}<td class=n>{conover}<td class=n>{nemenyi}<td class=n>{:.2}<td class=n>{:.2}<td class=n>{} of {}<td class=n>{same}</tr>",
                     of.z,
                     p_of(of.p),
                     p_of(of.p_holm),
@@ -294,7 +296,7 @@ fn pairs(out: &mut String, cell: &Cell) {
                 );
             }
             Err(why) => {
-                put!(out, "<tr><td>{name}<td colspan=7 class=why>none: {}<td>{same}</tr>", html(why));
+                put!(out, "<tr><td>{name}<td colspan=9 class=why>none: {}<td>{same}</tr>", html(why));
             }
         }
     }

@@ -104,6 +104,30 @@ impl Below {
     }
 }
 
+/// Area between a level and the curve where that is below it: depth times time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct AreaBelow {
+    level: f64,
+    area: f64,
+}
+
+impl AreaBelow {
+    pub(crate) const fn level(level: f64) -> Self {
+        Self { level, area: 0.0 }
+    }
+
+    pub(crate) fn add(&mut self, piece: Option<Piece>) {
+        let Some((t0, v0, t1, v1)) = piece else { return };
+        let Some(span) = below((t0, v0, t1, v1), self.level) else { return };
+        let deep = |t: f64| self.level - if t1 > t0 { v0 + (v1 - v0) * (t - t0) / (t1 - t0) } else { v0 };
+        self.area += span.length_s() * (deep(span.from_s) + deep(span.to_s)) / 2.0;
+    }
+
+    pub(crate) const fn area(&self) -> f64 {
+        self.area
+    }
+}
+
 /// Mean of one curve while another with the same times is below a level.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MeanWhileBelow {

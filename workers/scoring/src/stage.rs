@@ -139,7 +139,9 @@ mod tests {
         assert_eq!(report.recording, run.hash());
         assert_eq!(done.verdict, Some(Verdict::Invalid));
         let table = String::from_utf8(done.artifacts[1].bytes.clone()).unwrap();
-        assert_eq!(table.lines().count(), report.metrics.len() + 1);
+        let names = metrics::peers::NAMES.len();
+        assert!(table.contains(",socnavbench.closest_pedestrian_distance,"), "{table}");
+        assert_eq!(table.lines().count(), report.metrics.len() + names + 1);
     }
 
     #[tokio::test]

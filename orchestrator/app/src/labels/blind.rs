@@ -43,9 +43,9 @@ pub struct Blind {
 
 /// A run that will be judged.
 #[derive(Debug, Clone)]
-struct Candidate {
-    dir: PathBuf,
-    run: Run,
+pub(super) struct Candidate {
+    pub(super) dir: PathBuf,
+    pub(super) run: Run,
     control: bool,
 }
 
@@ -123,7 +123,7 @@ pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Resu
 }
 
 /// The runs of these bundles, without the twins that have no robot.
-fn candidates(bundles: &[PathBuf], first: bool, control: bool) -> Result<Vec<Candidate>, Complaint> {
+pub(super) fn candidates(bundles: &[PathBuf], first: bool, control: bool) -> Result<Vec<Candidate>, Complaint> {
     let mut found = Vec::new();
     for dir in folders(bundles)? {
         let manifest = bundle::manifest(&dir).ok_or_else(|| batch::none(&dir))?;
@@ -149,7 +149,7 @@ fn apart(candidates: &[Candidate]) -> Result<(), Complaint> {
 }
 
 /// Another order, by the seed alone (Fisher and Yates).
-fn shuffle<T>(list: &mut [T], seed: u64) {
+pub(super) fn shuffle<T>(list: &mut [T], seed: u64) {
     let mut chance = ChaCha8Rng::seed_from_u64(stream_seed(seed, "order of judged runs"));
     for last in (1..list.len()).rev() {
         let below = u64::try_from(last).unwrap_or(u64::MAX).saturating_add(1);
@@ -159,7 +159,7 @@ fn shuffle<T>(list: &mut [T], seed: u64) {
 }
 
 /// `r01`, `r02`, …: as many digits as the last one has, two at least.
-fn names(count: usize) -> Vec<String> {
+pub(super) fn names(count: usize) -> Vec<String> {
     let digits = count.to_string().len().max(2);
     (1..=count).map(|number| format!("r{number:0digits$}")).collect()
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use socrates_scoring::metrics::peers;
 use socrates_study::correlate::{Correlations, Metrics, Wanted, correlate as correlated};
 use socrates_study::design::Design;
 use socrates_study::exclude::excluded;
@@ -41,7 +42,15 @@ pub fn correlate(talk: &Printer, options: &CorrelateOptions) -> Result<(), Compl
             "`--metrics human_distance_min,space_compliance` declares those that you expect something of; `--search --hold-out SCENARIO` looks for one",
         ));
     } else {
-        Wanted::Declared(options.metrics.clone())
+        // Other tools' names are those of ours that they mean: the same values under two names would be two tests of one thing.
+        let ours = |name: &String| peers::ours(name).map_or_else(|| name.clone(), |name| name.ours.to_owned());
+        let mut declared: Vec<String> = Vec::new();
+        for name in options.metrics.iter().map(ours) {
+            if !declared.contains(&name) {
+                declared.push(name);
+            }
+        }
+        Wanted::Declared(declared)
     };
     let metrics = metrics(&design, &options.design)?;
     let ratings = rated(&options.answers, &design)?;

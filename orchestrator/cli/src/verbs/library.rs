@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use socrates_app::config::Config;
-use socrates_app::labels::{Blind, CompareOptions, PageOptions};
+use socrates_app::labels::{Blind, CompareOptions, ObserveOptions, ObservedOptions, PageOptions};
 use socrates_app::library_coverage::{self, CoverageOptions};
+use socrates_app::library_diversity::{self, DiversityOptions};
 use socrates_app::merge::{self, MergeOptions};
 use socrates_app::output::Printer;
 use socrates_app::query::{self, Condition, QueryOptions};
@@ -61,6 +62,19 @@ enum LibraryVerb {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Print how different the scenarios of a library are: edits of the nodes that robot and people pass, and time warping of the robot's
+    /// tracks, over all pairs on one location and for each scenario's nearest.
+    Diversity {
+        /// Libraries, bundles, or folders that hold bundles.
+        #[arg(required = true)]
+        what: Vec<PathBuf>,
+        /// Scenarios that are compared, at most; of more, as many that are evenly spread over the list.
+        #[arg(long, value_name = "N", default_value_t = 200)]
+        most: usize,
+        /// Write every pair as a table too (`.csv`).
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Write page and tables of a library anew; of more than 1000 scenarios several pages that lead to each other.
     Gallery {
         /// Folder of the library.
@@ -111,6 +125,10 @@ impl Library {
                 let (library, out) = (library.clone(), out.clone());
                 library_coverage::coverage(talk, &CoverageOptions { library, out })
             }
+            LibraryVerb::Diversity { what, most, out } => {
+                let (what, most, out) = (what.clone(), *most, out.clone());
+                done(library_diversity::diversity(talk, &DiversityOptions { what, most, out }))
+            }
             LibraryVerb::Gallery { library } => done(report::report(talk, library)),
             LibraryVerb::Query { library, conditions, columns, paths, out } => {
                 let (library, conditions, columns) = (library.clone(), conditions.clone(), columns.clone());
@@ -134,6 +152,20 @@ pub(crate) struct Labels {
 enum LabelsVerb {
     /// Write a page on which people label runs: simulable, appropriate, as asked. It needs no network and saves a CSV.
     Page(Page),
+    /// Write a page for observers: films that play once, with a slider, a belief or pairs; nothing on it names a planner.
+    Observe(Observe),
+    /// Tell what observers said: who is kept, how far they agree, what films were rated, what viewers knew when, strengths of planners.
+    Observed {
+        /// Tables (CSV) that the page saved: `task,rater,t,value`.
+        #[arg(required = true)]
+        answers: Vec<PathBuf>,
+        /// The key that `labels observe` wrote beside the page.
+        #[arg(long, value_name = "FILE")]
+        key: PathBuf,
+        /// Folder for `raters.csv`, `films.csv` and `beliefs.csv`.
+        #[arg(long, value_name = "DIR", default_value = "observed")]
+        out: PathBuf,
+    },
     /// Compare what blind judges answered with the verdicts, with each other, and on the controls.
     Compare {
         /// Tables of answers (CSV) that the page saved: `run,rater,as_asked,sentence`.
@@ -146,6 +178,52 @@ enum LabelsVerb {
         #[arg(long, required = true, num_args = 1.., value_name = "FOLDER")]
         bundles: Vec<PathBuf>,
     },
+}
+
+/// Arguments of `labels observe`.
+#[derive(Debug, Clone, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
+struct Observe {
+    /// Bundle folders, or folders that hold bundles.
+    #[arg(required = true)]
+    bundles: Vec<PathBuf>,
+    /// File of the page; the key is written beside it.
+    #[arg(long, short, default_value = "observing/observe.html")]
+    out: PathBuf,
+    /// Only the first run of each bundle.
+    #[arg(long)]
+    first: bool,
+    /// Heading of the page.
+    #[arg(long, default_value = "Robots among people")]
+    title: String,
+    /// A slider after each film: how good was the robot's behavior, 0 to 1.
+    #[arg(long)]
+    slider: bool,
+    /// A slider during each film: to which of two places does the robot go.
+    #[arg(long)]
+    belief: bool,
+    /// Two films of one scenario and seed under two planners in step: which is better.
+    #[arg(long)]
+    pairs: bool,
+    /// Films that come a second time, by which raters are kept or dropped.
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    repeat: usize,
+    /// Films that every rater gets.
+    #[arg(long, value_name = "N", default_value_t = 15)]
+    control: usize,
+    /// How many of the other films a rater gets, drawn by their name; all if it is left out.
+    #[arg(long, value_name = "N")]
+    each: Option<usize>,
+    /// Seed of the order in which films are numbered, and of sides.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+}
+
+impl Observe {
+    fn options(&self) -> ObserveOptions {
+        let Self { bundles, out, first, title, slider, belief, pairs, repeat, control, each, seed } = self.clone();
+        ObserveOptions { bundles, out, first, title, slider, belief, pairs, repeat, control, each, seed }
+    }
 }
 
 /// Arguments of `labels page`.
@@ -189,6 +267,11 @@ impl Labels {
     pub(super) fn act(&self, talk: &Printer) -> Outcome {
         done(match &self.verb {
             LabelsVerb::Page(page) => labels::page(talk, &page.options()),
+            LabelsVerb::Observe(observe) => labels::observe(talk, &observe.options()),
+            LabelsVerb::Observed { answers, key, out } => {
+                let (answers, key, out) = (answers.clone(), key.clone(), out.clone());
+                labels::observed(talk, &ObservedOptions { answers, key, out })
+            }
             LabelsVerb::Compare { labels, key, bundles } => {
                 let (labels, key, bundles) = (labels.clone(), key.clone(), bundles.clone());
                 labels::compare(talk, &CompareOptions { labels, key, bundles })

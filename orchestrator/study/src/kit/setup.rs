@@ -19,10 +19,14 @@ pub struct Survey {
 /// The default text of consent: what ethics boards ask for, with slots for what nobody else can know.
 pub const CONSENT: &str = "You are invited to take part in a study of how robots move among people. It is done by [name and \
 institution].\n\nYou will watch short films and answer questions about them. There are no right or wrong answers. Nothing in the films is \
-meant to upset anybody.\n\nTaking part is voluntary. You may stop at any time, without giving a reason, by closing this page; what you \
+meant to upset anybody.\n\nIt takes about [minutes] minutes. You are paid [amount and currency] for it, also if you stop for a reason that lies \
+with us.\n\nTaking part is voluntary. You may stop at any time, without giving a reason, by closing this page; what you \
 have answered until then can be deleted if you write to us within [days] days.\n\nWe keep your answers and the times you took, under a \
 random name. We do not keep your network address, your place or anything else that tells who you are. Answers are published without \
 names.\n\nQuestions: [mail]. Ethics approval: [board and number].";
+
+/// The slot of the default text for how long it takes.
+pub const MINUTES: &str = "minutes";
 
 impl Default for Survey {
     fn default() -> Self {
@@ -130,8 +134,11 @@ mod tests {
     #[test]
     fn the_default_consent_has_slots_and_paragraphs() {
         let consent = Survey::default().consent;
-        assert_eq!(consent.open_slots, ["name and institution", "days", "mail", "board and number"]);
-        assert_eq!(consent.paragraphs.len(), 5);
+        assert_eq!(
+            consent.open_slots,
+            ["name and institution", MINUTES, "amount and currency", "days", "mail", "board and number"]
+        );
+        assert_eq!(consent.paragraphs.len(), 6);
         assert_eq!(Consent::from(consent.text()), consent);
     }
 

@@ -39,6 +39,16 @@ fn friedman_with_ties_and_exactly() {
 }
 
 #[test]
+fn pairs_after_friedman_by_conover_and_nemenyi() {
+    // scikit-posthocs 0.17.1; B − A, C − A, C − B.
+    let found = posthoc(&first_item()).unwrap();
+    for (one, right) in found.iter().zip([(0.099_262, 0.289_666), (0.429_696, 0.759_287), (0.018_046, 0.069_530)]) {
+        near(one.conover.unwrap(), right.0, 1e-6);
+        near(one.nemenyi, right.1, 1e-6);
+    }
+}
+
+#[test]
 fn wilcoxon_by_both_rules() {
     let table = first_item();
     let less = |i: usize, j: usize| table.row_iter().map(|row| row[i] - row[j]).collect::<Vec<_>>();
@@ -131,6 +141,15 @@ fn strengths_of_paired_comparison() {
     near(found.errors[1], 0.487_152_066, 1e-8);
     near(found.strengths[2], -0.444_379_742, 1e-8);
     near(found.errors[2], 0.477_867_647, 1e-8);
+    // The same with ties; R 4.2.2, optim (BFGS, tolerance 1e-18) of the likelihood.
+    let ties = DMatrix::from_row_slice(3, 3, &[0.0, 2.0, 3.0, 2.0, 0.0, 2.0, 3.0, 2.0, 0.0]);
+    let found = davidson(&wins, &ties).unwrap();
+    near(found.strengths[1], 0.917_463_85, 1e-5);
+    near(found.strengths[2], -0.430_092_07, 1e-5);
+    near(found.ties, -0.964_527_25, 1e-5);
+    near(found.errors[1], 0.488_247_9, 1e-5);
+    near(found.errors[2], 0.469_138_2, 1e-5);
+    near(found.ties_error, 0.416_192_0, 1e-5);
     let always = DMatrix::from_row_slice(2, 2, &[0.0, 3.0, 0.0, 0.0]);
     assert_eq!(bradley_terry(&always), Err(NoValue::NotConnected));
 }

@@ -66,6 +66,22 @@ pub(super) const FAMILY: Family = Family {
             source: "HuNavSim, social_work, times the step so that it does not grow with the sampling rate",
             about: "integral over time of social force on the robot, wall force on the robot and social forces on people",
         },
+        Sheet {
+            id: "social_work_rate",
+            unit: "model",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Humans, Need::Map],
+            source: "PIC4SeR, social work per second",
+            about: "social_work over the length of the trip, so that a slow robot is not worse for its time alone",
+        },
+        Sheet {
+            id: "social_force_p95",
+            unit: "model",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "Robot SF, force quantiles, weighted by time",
+            about: "sum of the sizes of the social forces that the robot exerts on people, undershot for 95 % of the time",
+        },
     ],
     thresholds: &[
         ("strength", STRENGTH),
@@ -159,12 +175,19 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     });
     let short = "the recording has no length";
     let no_map = "there is no map";
+    let length = on_people.length_s();
+    let work = walls.as_ref().map(|walls| walls.integral() + on_robot.integral() + on_people.integral());
     vec![
         or_why(on_people.mean(), short),
         or_why(on_robot.mean(), short),
         or_why(walls.as_ref().and_then(Series::mean), no_map),
         or_why(on_walls, no_map),
-        or_why(walls.map(|walls| walls.integral() + on_robot.integral() + on_people.integral()), no_map),
+        or_why(work, no_map),
+        match work {
+            Some(work) => or_why((length > 0.0).then(|| work / length), short),
+            None => Err(no_map.to_owned()),
+        },
+        or_why(on_people.time_quantile(0.95).filter(|_| length > 0.0), short),
     ]
 }
 
@@ -181,7 +204,12 @@ mod tests {
         let wanted = 2.1 * (-1.0_f64 / 0.35).exp();
         assert!((value(&run, "social_force_on_robot").unwrap() - wanted).abs() < 1e-6);
         assert!((value(&run, "social_force_on_people").unwrap() - wanted).abs() < 1e-6);
-        assert_eq!(value(&run, "social_work"), None);
+        assert_eq!((value(&run, "social_work"), value(&run, "social_work_rate")), (None, None));
+        assert!((value(&run, "social_force_p95").unwrap() - wanted).abs() < 1e-6, "always the same");
+        let place = floor(&[], &[], &[]);
+        let evidence = Evidence { location: Some(&place), ..Evidence::of(&run) };
+        let (work, rate) = (value_of(&evidence, "social_work"), value_of(&evidence, "social_work_rate"));
+        assert!((work.unwrap() / 5.0 - rate.unwrap()).abs() < 1e-5, "5 s");
     }
 
     #[test]

@@ -86,6 +86,15 @@ pub(super) const FAMILY: Family = Family {
     measure: Measure::Whole { measure, why: "the goals and the weights T - t are known at the end" },
 };
 
+/// The robot's goal and the other place that somebody who watches is most likely to take for it; `None` where one of the two is
+/// not known.
+#[must_use]
+pub fn rival_goals(scene: &Scene<'_>) -> Option<[Point; 2]> {
+    let goal = scene.goal?;
+    let start = scene.even.first()?.at;
+    candidates(scene, &goal, &start).first().map(|other| [goal, *other])
+}
+
 /// Other places the robot might be going to: ends of the graph's ways, and places off the way at its junctions.
 fn candidates(scene: &Scene<'_>, goal: &Point, start: &Point) -> Vec<Point> {
     let Some(place) = scene.signals.evidence.location else { return Vec::new() };

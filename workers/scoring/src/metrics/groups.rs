@@ -5,6 +5,7 @@ use socrates_model::{HumanId, Point};
 use crate::circle::{Circle, P_SPACE_M, STANDING_MPS};
 use crate::hull::{convex_hull, outside_hull_m};
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::running::Least;
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
 
@@ -73,6 +74,14 @@ pub(super) const FAMILY: Family = Family {
             "TAGA (arXiv 2503.21168), group collision rate, per run",
             "1 when the robot's disc was ever nearer than 0.45 m to the convex hull of a group's members",
         ),
+        Sheet {
+            id: "group_distance_min",
+            unit: "m",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "Robot SF, min_distance_to_group_boundary, to the convex hull and from the robot's surface",
+            about: "smallest distance of the robot's disc from the convex hull of a group's members, standing or walking; 0 once it touches the hull",
+        },
     ],
     thresholds: &[
         ("together_m", TOGETHER_M),
@@ -95,11 +104,14 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let mut deepest: Option<f64> = None;
     let (mut splits, mut disturbed) = (0_usize, 0.0);
     let (mut ring, mut in_hull) = (0.0, 0.0);
+    let mut nearest = Least::default();
     for group in &groups {
         let outside = outside(robot, group);
         seconds += outside.time_below(0.0);
         ring += outside.time_below(P_SPACE_M) - outside.time_below(0.0);
-        in_hull += beside_hull(robot, group).time_below(HULL_M);
+        let beside = beside_hull(robot, group);
+        in_hull += beside.time_below(HULL_M);
+        nearest.add(beside.least().map(|(_, least)| least.max(0.0)));
         entries += outside.stretches_below(0.0, 0.05, 0.5).len();
         if let Some((_, least)) = outside.least() {
             deepest = Some(deepest.map_or(-least, |old: f64| old.max(-least)).max(0.0));
@@ -121,6 +133,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         or_why(deepest.map(|_| ring), standing),
         Ok(in_hull),
         Ok(if in_hull > 0.0 { 1.0 } else { 0.0 }),
+        or_why(nearest.value(), "no group is there as a whole while the robot is"),
     ]
 }
 
@@ -228,5 +241,9 @@ mod tests {
         assert_eq!(value_of(&evidence, "o_space_seconds"), Some(0.0));
         assert_eq!(value_of(&evidence, "group_splits"), Some(0.0));
         assert_eq!(value_of(&evidence, "group_collision"), Some(0.0));
+        // The way at y = 3 is 2 m beside the square of 2 m, less the robot's 0.25 m; through the middle it is 0.
+        assert!((value_of(&evidence, "group_distance_min").unwrap() - 1.75).abs() < 1e-6);
+        let through = Evidence { recording: &run, ..evidence };
+        assert_eq!(value_of(&through, "group_distance_min"), Some(0.0));
     }
 }

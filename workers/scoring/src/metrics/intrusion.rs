@@ -3,7 +3,7 @@
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::zones::HALL_M;
 use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
-use crate::running::Below;
+use crate::running::{AreaBelow, Below};
 use crate::tracks::Sample;
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
@@ -33,6 +33,14 @@ pub(super) const FAMILY: Family = Family {
             source: "Okal and Arras 2016, anisotropic, b = 1, lambda = 0.4, r = 0.9, a = 1.2 m",
             about: "sum over humans of the time with d < a e^((r - d) / b) (lambda + (1 - lambda)(1 + cos phi) / 2), d the center distance and phi the angle off the person's heading: a robot in front intrudes from farther away",
         },
+        Sheet {
+            id: "intrusion_area",
+            unit: "m*s",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "Robot SF, social_proxemic_intrusion_area_m_s, as an integral",
+            about: "sum over humans of the integral over time of (1.2 m - d)+, d the surface distance: how deep the robot is in their personal space, times how long; negative distances of contacts count in full",
+        },
     ],
     thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
     measure: Measure::Online(Begin(|humans| Box::new(Intrusions::new(humans)))),
@@ -57,6 +65,7 @@ fn margin(r: &Sample, h: &Sample) -> f64 {
 struct Intrusion {
     zones: [Below; 3],
     front: Below,
+    area: AreaBelow,
 }
 
 #[derive(Clone)]
@@ -64,7 +73,8 @@ struct Intrusions(Vec<Intrusion>);
 
 impl Intrusions {
     fn new(humans: usize) -> Self {
-        let none = Intrusion { zones: HALL_M.map(Below::level), front: Below::level(0.0) };
+        let none =
+            Intrusion { zones: HALL_M.map(Below::level), front: Below::level(0.0), area: AreaBelow::level(HALL_M[1]) };
         Self(vec![none; humans])
     }
 }
@@ -76,6 +86,7 @@ impl Running for Intrusions {
             for zone in &mut intrusion.zones {
                 pieces.iter().for_each(|piece| zone.add(*piece));
             }
+            pieces.iter().for_each(|piece| intrusion.area.add(*piece));
             // Only pieces with an end inside count, so angles matter only there.
             if let Some((r, others)) = now.before
                 && let Some(h) = others.get(index).filter(|h| h.there && human.there && r.there && robot.there)
@@ -89,14 +100,27 @@ impl Running for Intrusions {
     fn values(&self, _end: &End<'_>) -> Vec<Measured> {
         let uniform = |zone: usize| self.0.iter().filter_map(|one| one.zones.get(zone)).map(Below::seconds).sum();
         let front = self.0.iter().map(|one| one.front.seconds()).sum();
-        vec![Ok(uniform(0)), Ok(uniform(1)), Ok(uniform(2)), Ok(front)]
+        let area = self.0.iter().map(|one| one.area.area()).sum();
+        vec![Ok(uniform(0)), Ok(uniform(1)), Ok(uniform(2)), Ok(front), Ok(area)]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::fixture::{Walk, recording};
-    use crate::metrics::tests::value;
+    use crate::metrics::tests::{at_both_rates, value};
+
+    #[test]
+    fn depth_times_time_is_that_of_the_straight_approach() {
+        // From 2 m between surfaces to 0.2 m at 0.5 m/s: below 1.2 m for 2 s, on the mean 0.5 m deep; then it stands 4.4 s at 1 m.
+        let walks = || {
+            let robot = [(0., -2.53, 0.), (3.6, -0.73, 0.), (1000., -0.73, 0.)];
+            vec![Walk::through(socrates_model::AgentId::Robot, &robot), Walk::human(1, 0., 0., 0., 0.)]
+        };
+        at_both_rates(&walks, 8.0, "intrusion_area", 0.5 * 2.0 + 4.4 * 1.0, 1e-3);
+        let far = || vec![Walk::robot(-6., 0., 0., 0.), Walk::human(1, 0., 0., 0., 0.)];
+        at_both_rates(&far, 8.0, "intrusion_area", 0.0, 1e-12);
+    }
 
     #[test]
     fn two_people_at_one_meter_count_twice_and_the_front_reaches_farther() {

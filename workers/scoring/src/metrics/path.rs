@@ -69,6 +69,22 @@ pub(super) const FAMILY: Family = Family {
             about: "turning of the direction of travel, less that along the shortest way (without a map or a goal: the turn from the first to the last direction), over the path length",
         },
         Sheet {
+            id: "turning_excess",
+            unit: "rad",
+            direction: Direction::Down,
+            needs: ROBOT,
+            source: "SEAN 2.0, path_irregularity, which is not divided by the length",
+            about: "turning of the direction of travel, less that along the shortest way (without a map or a goal: the turn from the first to the last direction)",
+        },
+        Sheet {
+            id: "time_over_ideal",
+            unit: "ratio",
+            direction: Direction::Down,
+            needs: MAP,
+            source: "Robot SF, time_to_goal_ideal_ratio",
+            about: "T / T* of a robot that arrived, T* the shortest way for its disc at its nominal speed: 1 is ideal",
+        },
+        Sheet {
             id: "cumulative_heading_change",
             unit: "rad",
             direction: Direction::Down,
@@ -169,13 +185,14 @@ impl Way {
         });
     }
 
-    fn irregularity(&self, setting: &Setting<'_>) -> Measured {
+    /// Turning beyond that along the shortest way, rad.
+    fn excess(&self, setting: &Setting<'_>) -> Measured {
         let ends = self.first_direction.zip(self.direction).map(|(first, last)| wrap_angle(last - first).abs());
         let least = setting.field.zip(setting.geodesic).zip(self.start.zip(setting.goal));
         let least = least.and_then(|((field, geodesic), (start, goal))| {
             shortest_turn(field, geodesic, &start, &goal, setting.robot_radius_m)
         });
-        let turn = ends.map(|ends| (self.turned_rad - least.unwrap_or(ends)).max(0.0) / self.length_m.max(STEP_M));
+        let turn = ends.map(|ends| (self.turned_rad - least.unwrap_or(ends)).max(0.0));
         or_why(turn, "the robot does not move")
     }
 }
@@ -233,6 +250,7 @@ impl Running for Way {
         let shortest = self.start.and_then(|start| end.setting.to_goal_m(&start)).filter(|way| *way > 0.0);
         let speed = end.setting.robot_speed_mps;
         let succeeded = if end.succeeded() { 1.0 } else { 0.0 };
+        let excess = self.excess(end.setting);
         let no_way = "the map has no way to the goal for the robot's disc";
         let straight =
             self.start.zip(end.setting.goal).map(|(start, goal)| (goal - start).norm()).filter(|way| *way > 1e-6);
@@ -251,7 +269,15 @@ impl Running for Way {
                 Some(way) => or_why((length > 0.0).then(|| (way / length).min(1.0)), "the robot does not move"),
             },
             or_why(straight.map(|straight| length / straight), "start and goal are one place"),
-            self.irregularity(end.setting),
+            excess.clone().map(|excess| excess / self.length_m.max(STEP_M)),
+            excess,
+            match (shortest, end.trip_s()) {
+                (None, _) => Err(no_way.to_owned()),
+                (Some(_), None) => Err("the robot never arrives".to_owned()),
+                (Some(way), Some(time)) => {
+                    or_why((speed > 0.0).then(|| time * speed / way), "the robot's nominal speed is not known")
+                }
+            },
             Ok(self.heading_rad),
             or_why((self.triples > 0).then(|| self.curvature / count(self.triples)), "the path is shorter than 1 m"),
         ]
@@ -321,6 +347,12 @@ mod tests {
         let evidence = Evidence { location: Some(&place), ..Evidence::of(&run) };
         let spl = value_of(&evidence, "spl").unwrap();
         assert!((spl - 5.0 / 7.0).abs() < 0.05, "{spl}");
+        // 7 s for 5 m at a nominal 0.8 m/s, and a right angle that only the goal's direction asks for in part.
+        let late = value_of(&evidence, "time_over_ideal").unwrap();
+        assert!((late - 7.0 * 0.8 / 5.0).abs() < 0.08, "{late}");
+        assert_eq!(value(&run, "time_over_ideal"), None);
+        let turned = value_of(&evidence, "turning_excess").unwrap();
+        assert!((turned - std::f64::consts::FRAC_PI_2).abs() < 0.3, "{turned}");
         assert_eq!(value(&run, "spl"), None);
         assert!((value(&run, "path_length_ratio").unwrap() - 1.4).abs() < 1e-6);
     }

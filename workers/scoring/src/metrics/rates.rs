@@ -20,6 +20,9 @@ const NO_VALUE: &[(&str, &str)] = &[
     ("planner_wait", "recordings hold no computing times of planners"),
     ("command_fluency", "recordings hold no commands"),
     ("relative_time", "there is no run of the robot alone to compare with"),
+    // Tested at both rates with a door of their own.
+    ("entering_order_errors", "the map has no doors"),
+    ("flow_throughput", "the map has no doors"),
 ];
 
 /// The robot stops for a gesture, drives between two who talk, brushes one and meets one who crosses.

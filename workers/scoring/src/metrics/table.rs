@@ -3,11 +3,15 @@
 use socrates_model::{Missing, Report};
 use socrates_stream::csv::joined;
 
-/// One line per metric: `run,planner,seed,id,value,unit,direction,version,missing,note,thresholds`. An absent value is an empty cell.
+use crate::metrics::peers;
+
+/// One line per metric, and then per name of other tools' tables: `run,planner,seed,id,value,unit,direction,version,missing,note,thresholds`.
+/// An absent value is an empty cell.
 #[must_use]
 pub fn csv(report: &Report) -> String {
     let mut text = String::from("run,planner,seed,id,value,unit,direction,version,missing,note,thresholds\n");
-    for metric in &report.metrics {
+    let named = peers::named(&report.metrics);
+    for metric in report.metrics.iter().chain(&named) {
         let value = metric.value.map_or_else(String::new, |value| value.to_string());
         let missing = match metric.missing {
             None => "",

@@ -6,7 +6,7 @@
 //! times of runs  ─► kaplan_meier ─► restricted_mean
 //! values of runs ─► quantile, median ─► bootstrap_median, bootstrap_mean (seeded)
 //! values by scenario and planner ─► Clusters ─► means, paired differences, orders of every resample
-//! scores of planners ─► kendall_tau
+//! scores of planners ─► kendall_tau            tracks of points ─► time_warp
 //! ```
 //!
 //! Every function is pure: the same numbers (and the same seed) give the same answer on every
@@ -16,6 +16,7 @@
 
 mod bootstrap;
 mod clusters;
+mod dtw;
 mod kappa;
 mod mcnemar;
 mod order;
@@ -26,6 +27,7 @@ mod wilson;
 
 pub use bootstrap::{Bootstrap, bootstrap_mean, bootstrap_median};
 pub use clusters::Clusters;
+pub use dtw::time_warp;
 pub use kappa::{cohen_kappa, krippendorff_alpha};
 pub use mcnemar::mcnemar;
 pub use order::{mean, median, quantile, sample_sd};
