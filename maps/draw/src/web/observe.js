@@ -53,6 +53,8 @@
     task = order.find((t) => mine()[t.id] === undefined) || null;
     at("stage").hidden = !task; at("end").hidden = Boolean(task);
     answer = null; ended = false; views = [];
+    // The clock stands at the end of the film before: without this the next one would count as seen.
+    clock.end = 0; clock.set(0); clock.play(false);
     progress();
     if (!task) return;
     const films = task.films.map((i) => data.films[i]), pair = films.length > 1;
@@ -62,7 +64,7 @@
     for (const [side, film] of films.entries()) {
       const figure = word("figure", "", box);
       const svg = make("svg", {}, null); figure.appendChild(svg);
-      if (pair) word("figcaption", side ? "right" : "left", figure);
+      if (pair) word("figcaption", side ? "second" : "first", figure);
       const view = new View(svg, data.places[film.place]);
       view.load(film); svg.setAttribute("aria-label", "the film, seen from above");
       view.end = seconds(film); view.focus = film.focus;
@@ -70,7 +72,6 @@
       if (task.kind === "belief") film.goals.forEach(([x, y], i) => mark(view, x, y, "AB"[i]));
       views.push(view);
     }
-    clock.play(false);
     clock.end = Math.max(...views.map((view) => view.end));
     question();
     at("play").disabled = !rater; at("next").disabled = true;
@@ -100,7 +101,7 @@
     } else if (task.kind === "pair") {
       word("p", "Which robot behaves better among the people?", box, "lead");
       const part = word("div", "", box, "choices");
-      for (const [what, words] of [["left", "the left one"], ["equal", "both alike"], ["right", "the right one"]]) {
+      for (const [what, words] of [["left", "the first one"], ["equal", "both alike"], ["right", "the second one"]]) {
         const b = word("button", words, part, "answer");
         b.type = "button"; b.disabled = true; b.dataset.answer = what; b.setAttribute("aria-pressed", "false");
         b.addEventListener("click", () => { answer = what; for (const other of part.children) other.setAttribute("aria-pressed", String(other === b)); ready(); });
@@ -157,7 +158,7 @@
   at("rater").value = rater;
   at("rater").addEventListener("input", (e) => { rater = clean(e.target.value); if (task && !clock.playing && !ended) { deal(); show(); } });
   at("rater").addEventListener("change", () => { at("rater").value = rater; keep(); clock.play(false); deal(); show(); });
-  at("play").addEventListener("click", () => { if (!rater || ended) return; at("rater").disabled = true; clock.play(true); });
+  at("play").addEventListener("click", () => { if (!rater || ended) return; at("rater").disabled = true; document.querySelector("details").open = false; at("stage").scrollIntoView(); clock.play(true); });
   at("next").addEventListener("click", next);
   at("export").addEventListener("click", save);
   addEventListener("resize", () => { for (const view of views) { view.lay(view.focus); view.show(Math.min(clock.now, view.end)); } });
