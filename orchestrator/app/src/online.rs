@@ -24,6 +24,7 @@ const BY_TRACKS: &[(&str, &str)] = &[
     ("readiness_envelope", GOALS),
     ("social_force_on_robot", SIDES),
     ("social_work", SIDES),
+    ("social_work_rate", SIDES),
 ];
 /// The paths of a bundle say from which node to which the robot goes; a table has a point for the goal.
 const GOALS: &str = "the goals that people may expect are those about the robot's nodes, which a table does not name";
