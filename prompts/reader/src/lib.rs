@@ -63,17 +63,24 @@ mod account;
 
 mod passes;
 
+mod errand;
+mod spot;
+mod wish;
+
 mod examples;
 
 pub use account::{Fate, Piece, Read, Verdict};
 pub use cast::People;
+pub use errand::{Denied, Errand, Leg, Spot, Toward};
 pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};
 pub use line::Line;
 pub use passes::Passes;
-pub use rows::{Act, Cue};
+pub use rows::{Act, Cue, Edit};
+pub use spot::Named;
 pub use statement::{Deed, Reason, Says, Statement};
 pub use story::{Person, Step, Story};
+pub use wish::{Whom, Wish};
 
 /// A reader with its rows.
 #[derive(Debug, Default)]
@@ -127,6 +134,37 @@ impl Reader {
     #[must_use]
     pub fn read(&self, text: &str) -> Read {
         self.passes(text).read()
+    }
+
+    /// The same of a text about people of whom was spoken before, by their roles: they come first in the story, and `last` of them are
+    /// those of whom it was last. `human_2` is the second of them.
+    #[must_use]
+    pub fn read_of(&self, text: &str, known: &[String], last: &[usize]) -> Read {
+        Passes::of(&wish::unjoined(text), cast::Cast::of(known, last, &self.0), &self.0).read()
+    }
+
+    /// What an edit asks for, wish by wish.
+    #[must_use]
+    pub fn wishes(&self, text: &str) -> Vec<Wish> {
+        wish::wishes(text, &self.0)
+    }
+
+    /// Whom words mean of people of these roles, of whom some were spoken of last.
+    #[must_use]
+    pub fn whom(&self, text: &str, known: &[String], last: &[usize]) -> Whom {
+        wish::whom(text, known, last, &self.0)
+    }
+
+    /// The clauses of a task: which places it names for the robot's way, and what for.
+    #[must_use]
+    pub fn errands(&self, text: &str) -> Vec<Errand> {
+        errand::errands(text, &self.0)
+    }
+
+    /// The places that a text names.
+    #[must_use]
+    pub fn places(&self, text: &str) -> Vec<Named> {
+        spot::places(text, &self.0)
     }
 }
 
