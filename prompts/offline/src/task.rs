@@ -12,6 +12,8 @@ use crate::named;
 pub(crate) struct End {
     /// As the task says it.
     pub(crate) name: String,
+    /// Where it says so, in bytes.
+    pub(crate) at: Range<usize>,
     /// The nodes that the map calls so; none where it knows no such place.
     pub(crate) nodes: Vec<NodeId>,
     /// Class of those nodes, or of the words.
@@ -75,6 +77,12 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             task.denied = onward.denied;
         }
     }
+    // Of several places by name one is taken.
+    let taken =
+        |ends: &[End]| ends.iter().find(|end| !end.nodes.is_empty()).or_else(|| ends.first()).map(|end| end.at.clone());
+    let used: Vec<Range<usize>> =
+        [&task.starts, &task.goals, &task.vias].into_iter().filter_map(|ends| taken(ends)).collect();
+    task.used.extend(used);
     // The name tells more than the kind of place.
     for (slot, ends) in [(&mut task.start, &task.starts), (&mut task.goal, &task.goals)] {
         let known = ends.iter().find(|end| !end.nodes.is_empty()).or_else(|| ends.first());
@@ -102,7 +110,7 @@ fn takes(task: &mut Task, errand: &Errand, text: &str, location: &Location) {
         (None, None) => {}
     }
     let kept = |at: &Range<usize>| denied.is_none_or(|denied| at.start < denied.at.start);
-    let first = task.used.len();
+    let mut named: Vec<&Range<usize>> = Vec::new();
     for leg in errand.legs.iter().filter(|leg| kept(&leg.name)) {
         if let Some(end) = end(leg, said(&leg.name), location) {
             let ends = match leg.toward {
@@ -111,11 +119,10 @@ fn takes(task: &mut Task, errand: &Errand, text: &str, location: &Location) {
                 Toward::Past => &mut task.vias,
             };
             ends.push(end);
-            task.used.push(leg.name.clone());
+            named.push(&leg.name);
         }
     }
     for spot in errand.spots.iter().filter(|spot| kept(&spot.at)) {
-        let named = task.used.get(first..).unwrap_or_default();
         if named.iter().any(|name| name.start < spot.at.end && spot.at.start < name.end) {
             continue;
         }
@@ -124,8 +131,10 @@ fn takes(task: &mut Task, errand: &Errand, text: &str, location: &Location) {
             Toward::To => &mut task.goal,
             Toward::Within | Toward::Past => &mut task.via,
         };
-        slot.get_or_insert((spot.class, said(&errand.at).to_owned()));
-        task.used.push(spot.at.clone());
+        if slot.is_none() {
+            *slot = Some((spot.class, said(&errand.at).to_owned()));
+            task.used.push(spot.at.clone());
+        }
     }
 }
 
@@ -158,7 +167,7 @@ fn end(leg: &Leg, name: &str, location: &Location) -> Option<End> {
     }
     let of_map = known.as_ref().map(|known| known.class).filter(|class| *class != PlaceClass::Plain);
     let nodes = known.map(|known| known.nodes).unwrap_or_default();
-    Some(End { name: name.to_owned(), nodes, class: of_map.or(leg.class), exact })
+    Some(End { name: name.to_owned(), at: leg.name.clone(), nodes, class: of_map.or(leg.class), exact })
 }
 
 #[cfg(test)]

@@ -8,10 +8,10 @@ use std::ops::Range;
 
 use socrates_model::PlaceClass;
 
-use crate::chunk::{Chunk, Is, chunks};
+use crate::chunk::{Chunk, Is, chunks, place};
 use crate::lexicon::Lexicon;
 use crate::rows::Set;
-use crate::token::{Mark, Sort, Token};
+use crate::token::{Mark, OWNS, Sort, Sorts, Token};
 
 /// What a place by name is for the robot's way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,6 +97,11 @@ pub(crate) fn errands(text: &str, lexicon: &Lexicon) -> Vec<Errand> {
     clauses.map(|clause| Clause { tokens: clause, chunks: chunks(clause, lexicon), lexicon, goes }.errand()).collect()
 }
 
+/// Whether a word of these sorts may tell one place from others: `packing` and `line`, not `the`, `towards` or `small`.
+pub(crate) fn may_name(word: &str, sorts: Sorts, lexicon: &Lexicon) -> bool {
+    !lexicon.errands.nameless.contains(word) && (sorts.has(Sort::Empty) || !sorts.say_nothing())
+}
+
 struct Clause<'a> {
     tokens: &'a [Token],
     chunks: Vec<Chunk>,
@@ -153,6 +158,13 @@ impl Clause<'_> {
         })
     }
 
+    /// The kind of place of which some words name a part.
+    fn of_part(&self, tokens: &Range<usize>) -> Option<PlaceClass> {
+        let part = tokens.clone().find(|at| self.is(*at, &self.lexicon.errands.part))?;
+        let within = self.tokens.get(..tokens.end).unwrap_or_default();
+        (part + 1..tokens.end).find_map(|at| place(within, at, self.lexicon)?.0)
+    }
+
     fn legs(&self) -> Vec<Leg> {
         let words = &self.lexicon.errands;
         let mut found = Vec::new();
@@ -171,15 +183,18 @@ impl Clause<'_> {
                     && !token.is(Sort::Other)
                     && !token.is(Sort::Slow)
                     && !token.is(Sort::Brisk)
-                    && (token.number().is_some() || !token.says_nothing())
+                    && (token.number().is_some()
+                        || token.spelled == OWNS
+                        || may_name(&token.spelled, token.sorts, self.lexicon))
             };
             let count = self.tokens.iter().skip(from).take(NAME).take_while(tells).count();
             let name = from..from + count;
-            // `to the nurse`
-            let person = self
-                .chunks
-                .iter()
-                .any(|chunk| matches!(chunk.is, Is::Noun(_) | Is::Whose(_)) && name.contains(&(chunk.tokens.end - 1)));
+            // `to the nurse`; `to the doctor's office` is a place.
+            let person = self.chunks.iter().any(|chunk| match chunk.is {
+                Is::Noun(_) => name.contains(&(chunk.tokens.end - 1)),
+                Is::Whose(_) => name.contains(&(chunk.tokens.end - 1)) && name.end <= chunk.tokens.end,
+                Is::Place(_) | Is::Amount(_) | Is::Mark(_) | Is::Word => false,
+            });
             if count == 0 || person {
                 continue;
             }
@@ -209,6 +224,10 @@ impl Clause<'_> {
             }
             let near =
                 |words: &Set| (1..=BEFORE).find(|back| first.checked_sub(*back).is_some_and(|at| self.is(at, words)));
+            // `to the other end of the corridor`: which end is which no map tells.
+            if let Some(class) = self.of_part(&chunk.tokens) {
+                return Some(Spot { toward: Toward::Past, class, at: self.bytes(chunk.tokens.clone()) });
+            }
             let rides = class == PlaceClass::Elevator && near(&words.rides).is_some();
             let toward = match (near(&words.from), near(&words.ends), near(&words.along)) {
                 (Some(_), None, _) if fetches => Toward::To,

@@ -64,6 +64,7 @@ mod account;
 mod passes;
 
 mod errand;
+mod scene;
 mod spot;
 mod wish;
 
@@ -77,6 +78,7 @@ pub use lexicon::{BadData, Files, SHIPPED};
 pub use line::Line;
 pub use passes::Passes;
 pub use rows::{Act, Cue, Edit};
+pub use scene::{Familiar, Scene};
 pub use spot::Named;
 pub use statement::{Deed, Reason, Says, Statement};
 pub use story::{Person, Step, Story};
@@ -159,6 +161,39 @@ impl Reader {
     #[must_use]
     pub fn errands(&self, text: &str) -> Vec<Errand> {
         errand::errands(text, &self.0)
+    }
+
+    /// What a text says of a scene in general.
+    #[must_use]
+    pub fn scene(&self, text: &str) -> Scene {
+        scene::scene(text, &self.0)
+    }
+
+    /// How much of a text the reader knows.
+    #[must_use]
+    pub fn familiar(&self, text: &str) -> Familiar {
+        scene::familiar(text, &self.0)
+    }
+
+    /// The base form of a word in lower case; one that nobody knows is one of several where it ends so.
+    #[must_use]
+    pub fn base(&self, word: &str) -> String {
+        let (base, bent) = self.0.words.base(word);
+        let one = base.strip_suffix('s').filter(|one| !one.ends_with(['s', 'u', 'i']));
+        one.filter(|_| base == word && bent == token::Bent::S).map_or(base.clone(), str::to_owned)
+    }
+
+    /// Whether a word in lower case may tell one place from others in a name.
+    #[must_use]
+    pub fn may_name(&self, word: &str) -> bool {
+        errand::may_name(word, self.0.words.sorts(word), &self.0)
+    }
+
+    /// Whether a word in lower case says nothing of its own, in any form.
+    #[must_use]
+    pub fn says_nothing(&self, word: &str) -> bool {
+        let words = &self.0.words;
+        words.sorts(word).and(words.sorts(&words.base(word).0)).say_nothing()
     }
 
     /// The places that a text names.

@@ -25,6 +25,7 @@ use socrates_model::form::Form;
 use socrates_model::request::Expect;
 use socrates_model::statement::{Background, Became, Statement, TextKey, covers};
 use socrates_model::{Fault, Location, ReadBy, Reading, Request};
+use socrates_reader::Reader;
 
 use crate::understand::{Understood, understood};
 use background::Around;
@@ -113,11 +114,19 @@ impl<'a> Account<'a> {
     ) -> Self {
         let text = key.text_of(request);
         let tokens = text::tokens(text);
-        let kinds = words::kinds(&tokens, location);
         let read = |text: &str| read_again(request, location, (key, reading.by), text);
-        let used = tokens.iter().map(|token| key == TextKey::RoughScenario && touched(token, &whole.used)).collect();
+        let used = match key {
+            TextKey::RoughScenario => whole.used.clone(),
+            TextKey::Task => whole.task.used.clone(),
+            TextKey::SocialContext => Reader::shipped().scene(text).used,
+        };
+        let kinds = match key {
+            TextKey::RoughScenario => words::kinds(&tokens, location),
+            TextKey::Task | TextKey::SocialContext => words::plain(&tokens, &whole.task.open, key),
+        };
+        let used = tokens.iter().map(|token| touched(token, &used)).collect();
         let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
-        let influence = again.influence();
+        let influence = if key == TextKey::RoughScenario { again.influence() } else { again.by_clause() };
         Self { request, location, whole, reading, key, text, tokens, kinds, influence }
     }
 
