@@ -74,7 +74,7 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     };
     crowd.now(&desk.draft.proposal, last);
     if !did && desk.not_done.is_empty() && unread.is_empty() {
-        desk.refuse(&wish.quote, "was not understood as a change");
+        desk.refuse(&wish.quote, "was not understood");
     }
 }
 

@@ -187,4 +187,18 @@ mod tests {
             assert_eq!(sorted(ways(task)), sorted(wanted), "{task}");
         }
     }
+
+    #[test]
+    fn of_a_task_it_is_said_which_of_its_words_are_not_played() {
+        for (on, task, missing) in [
+            ("office", "Drive to the reception past the kitchen", vec![]),
+            ("office", "Bring mail to the exit without entering the kitchen", vec![]),
+            ("office", "Go to the pharmacy", vec!["pharmacy"]),
+            // Any open area is taken.
+            ("hospital", "Go through the waiting area to the exit", vec!["waiting"]),
+        ] {
+            let reading = crate::read(&request(task, Some("A person walks towards the robot.")), &map(on));
+            assert_eq!(reading.missing(), missing, "{on}: {task}: {:?}", reading.statements);
+        }
+    }
 }

@@ -133,9 +133,21 @@ fn takes(task: &mut Task, errand: &Errand, text: &str, location: &Location) {
         };
         if slot.is_none() {
             *slot = Some((spot.class, said(&errand.at).to_owned()));
-            task.used.push(spot.at.clone());
+            task.used.extend(of_kind(text, &spot.at));
         }
     }
+}
+
+/// The words by which a place is one of a kind: `waiting` tells which area, and any is taken.
+fn of_kind(text: &str, at: &Range<usize>) -> Vec<Range<usize>> {
+    let words = text.get(at.clone()).unwrap_or_default();
+    let starts: Vec<usize> = word_starts(words).collect();
+    let ends = starts.iter().skip(1).copied().chain([words.len()]);
+    let all = starts.iter().copied().zip(ends).map(|(from, to)| from..to);
+    let own = |word: &Range<usize>| {
+        word.end == words.len() || named::telling(words.get(word.clone()).unwrap_or_default()).is_empty()
+    };
+    all.filter(own).map(|word| at.start + word.start..at.start + word.end).collect()
 }
 
 /// Where the words of a text begin.

@@ -5,6 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use socrates_model::PlaceClass;
 use socrates_reader::{Act, Example, Fate, Files, Reader, SHIPPED, Toward, Verdict};
 
 #[derive(Deserialize)]
@@ -312,4 +313,52 @@ fn a_task_names_the_places_of_the_way() {
         errands.iter().filter(|errand| errand.returns).map(|errand| said(&errand.at)).collect::<Vec<_>>(),
         ["come back"]
     );
+}
+
+#[test]
+fn a_part_of_a_place_is_on_the_way_and_a_size_is_no_name() {
+    let of = |text: &str| {
+        let errands = Reader::shipped().errands(text);
+        let legs: Vec<(Toward, String)> = errands
+            .iter()
+            .flat_map(|errand| &errand.legs)
+            .map(|leg| (leg.toward, text[leg.name.clone()].to_owned()))
+            .collect();
+        let spots: Vec<(Toward, PlaceClass)> =
+            errands.iter().flat_map(|errand| &errand.spots).map(|spot| (spot.toward, spot.class)).collect();
+        (legs.into_iter().filter(|(_, name)| !matches!(name.as_str(), "end")).collect::<Vec<_>>(), spots)
+    };
+    let corridor = vec![(Toward::Past, PlaceClass::Corridor)];
+    assert_eq!(of("Deliver a parcel to the other end of the corridor"), (vec![], corridor.clone()));
+    assert_eq!(of("Fetch a label from the end of the passage"), (vec![], corridor));
+    assert_eq!(of("Take documents to the small office"), (vec![], vec![(Toward::To, PlaceClass::Room)]));
+    assert_eq!(of("Go to the other ward").1, [(Toward::To, PlaceClass::Room)]);
+    assert_eq!(of("Carry files to the doctor's office").0, [(Toward::To, "doctor's office".to_owned())]);
+    assert_eq!(of("Carry files to the doctor").0, []);
+}
+
+#[test]
+fn a_scene_says_who_is_there_and_how_fast_they_go() {
+    for (text, role, pace_mps, said) in [
+        ("A hospital floor with visitors in a hurry", Some("visitor"), Some(1.5), vec!["visitors", "hurry"]),
+        ("An emergency", None, Some(1.5), vec!["emergency"]),
+        ("A slow afternoon among nurses", Some("nurse"), Some(0.6), vec!["nurses", "slow"]),
+        ("A warehouse in which people pick orders and robots carry them", None, None, vec![]),
+    ] {
+        let scene = Reader::shipped().scene(text);
+        assert_eq!((scene.role.as_deref(), scene.pace_mps), (role, pace_mps), "{text}");
+        assert_eq!(scene.used.iter().map(|at| &text[at.clone()]).collect::<Vec<_>>(), said, "{text}");
+    }
+}
+
+#[test]
+fn english_is_familiar_and_other_languages_are_not() {
+    for text in texts() {
+        let known = Reader::shipped().familiar(&text);
+        assert!(known.known * 10 >= known.words * 3, "{known:?}: {text}");
+    }
+    for text in ["Ein volles Lager mit vielen Leuten", "Une infirmière traverse le couloir devant le robot"] {
+        let known = Reader::shipped().familiar(text);
+        assert!(known.known * 10 < known.words * 4, "{known:?}: {text}");
+    }
 }

@@ -123,8 +123,9 @@ impl Text<'_> {
         found
     }
 
-    /// The same of a text of which it is known which words something was made of: they are read where their clause changes something.
-    pub(super) fn by_clause(&self) -> Influence {
+    /// The same of a text of which it is known which words something was made of. Not `surely`: they are read where their clause
+    /// changes something.
+    pub(super) fn by_clause(&self, surely: bool) -> Influence {
         let clauses = self.tokens.last().map_or(0, |last| last.clause + 1);
         let mut found = Influence { lines: vec![Vec::new(); clauses], read: vec![false; self.tokens.len()] };
         for (clause, lines) in found.lines.iter_mut().enumerate() {
@@ -135,7 +136,7 @@ impl Text<'_> {
             let other = self.without(&|n| used.contains(&n));
             let lost = |n: &usize| self.whole.get(*n).is_some_and(|line| !other.contains(line));
             *lines = (0..self.whole.len()).filter(lost).collect();
-            for place in used.into_iter().filter(|_| other != self.whole) {
+            for place in used.into_iter().filter(|_| surely || other != self.whole) {
                 if let Some(read) = found.read.get_mut(place) {
                     *read = true;
                 }

@@ -126,7 +126,8 @@ impl<'a> Account<'a> {
         };
         let used = tokens.iter().map(|token| touched(token, &used)).collect();
         let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
-        let influence = if key == TextKey::RoughScenario { again.influence() } else { again.by_clause() };
+        let influence =
+            if key == TextKey::RoughScenario { again.influence() } else { again.by_clause(key == TextKey::Task) };
         Self { request, location, whole, reading, key, text, tokens, kinds, influence }
     }
 
@@ -231,8 +232,10 @@ impl<'a> Account<'a> {
                     run.push(*place);
                 }
                 Some(_) | None => {
-                    let mut run =
-                        if runs.is_empty() && own != Fate::Read { std::mem::take(&mut joins) } else { Vec::new() };
+                    // Of a task the name alone is not played: what joins it to the robot's way is its errand.
+                    let leads =
+                        self.key == TextKey::RoughScenario && own != Fate::Read || matches!(own, Fate::Background(_));
+                    let mut run = if runs.is_empty() && leads { std::mem::take(&mut joins) } else { Vec::new() };
                     joins.clear();
                     run.push(*place);
                     runs.push((own, run));
