@@ -180,7 +180,7 @@ impl Reader {
     pub fn base(&self, word: &str) -> String {
         let (base, bent) = self.0.words.base(word);
         let one = base.strip_suffix('s').filter(|one| !one.ends_with(['s', 'u', 'i']));
-        one.filter(|_| base == word && bent == token::Bent::S).map_or(base.clone(), str::to_owned)
+        one.filter(|_| base == word && bent == token::Bent::S).map_or_else(|| base.clone(), str::to_owned)
     }
 
     /// Whether a word in lower case may tell one place from others in a name.
