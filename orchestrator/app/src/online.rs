@@ -25,9 +25,13 @@ const BY_TRACKS: &[(&str, &str)] = &[
     ("social_force_on_robot", SIDES),
     ("social_work", SIDES),
     ("social_work_rate", SIDES),
+    ("turning_excess", TURNS),
 ];
 /// The paths of a bundle say from which node to which the robot goes; a table has a point for the goal.
 const GOALS: &str = "the goals that people may expect are those about the robot's nodes, which a table does not name";
+/// What is turned beyond the least is next to nothing on a straight way, and the last heading is a degree or so of it.
+const TURNS: &str =
+    "where the robot turns hardly more than it must, its heading at the end of the tracks is most of the figure";
 /// The sideways force of the model changes its sign where somebody is straight ahead.
 const SIDES: &str = "of people straight ahead the last decimals of their places say on which side they are";
 /// Share and amount by which tracks may give another figure than the bundle: they end when the robot first comes near its goal,
