@@ -8,7 +8,7 @@ use crate::svg::escape;
 use crate::template::{self, template};
 
 const TEMPLATE: &str = template!("web/labels.html");
-const SCRIPT: &str = include_str!("web/labels.js");
+const SCRIPT: &str = concat!(include_str!("web/raters.js"), include_str!("web/labels.js"));
 /// Folder of the films beside a page.
 const FILMS: &str = "films";
 /// Members of a run that are its film.

@@ -53,7 +53,7 @@ pub use facts::fact_words;
 pub use figure::{FigureError, figure};
 pub use film::{Film, FilmError, FilmOptions, Seen, Shown, Strip};
 pub use label_page::{Asks, LabelFiles, LabelPage, Labeled};
-pub use observe_page::{Look, ObservePage, Observed};
+pub use observe_page::{Look, LookKind, ObservePage, Observed};
 pub use page::{Page, ProvenanceRow, StageRow};
 pub use pdf::{PdfError, pdf_from_svg};
 pub use png::{PngError, png_at_dpi, png_from_svg};

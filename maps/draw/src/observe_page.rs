@@ -8,7 +8,36 @@ use crate::play::{self, Places};
 use crate::template::{self, template};
 
 const TEMPLATE: &str = template!("web/observe.html");
-const SCRIPT: &str = include_str!("web/observe.js");
+const SCRIPT: &str = concat!(include_str!("web/raters.js"), include_str!("web/observe.js"));
+
+/// The kinds of questions to whoever looks at films.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LookKind {
+    /// A slider after a film.
+    Rate,
+    /// The same once more.
+    Again,
+    /// A slider during a film.
+    Belief,
+    /// Two films in step.
+    Pair,
+}
+
+impl LookKind {
+    /// Every kind.
+    pub const ALL: [Self; 4] = [Self::Rate, Self::Again, Self::Belief, Self::Pair];
+
+    /// Its word in tables and on the page.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Rate => "rate",
+            Self::Again => "again",
+            Self::Belief => "belief",
+            Self::Pair => "pair",
+        }
+    }
+}
 
 /// What is asked of whoever looks at films, by the numbers of the films.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,14 +69,14 @@ pub enum Look {
 }
 
 impl Look {
-    /// Its word in tables and on the page.
+    /// Its kind.
     #[must_use]
-    pub const fn kind(self) -> &'static str {
+    pub const fn kind(self) -> LookKind {
         match self {
-            Self::Rate { .. } => "rate",
-            Self::Again { .. } => "again",
-            Self::Belief { .. } => "belief",
-            Self::Pair { .. } => "pair",
+            Self::Rate { .. } => LookKind::Rate,
+            Self::Again { .. } => LookKind::Again,
+            Self::Belief { .. } => LookKind::Belief,
+            Self::Pair { .. } => LookKind::Pair,
         }
     }
 
@@ -57,7 +86,7 @@ impl Look {
             Self::Again { film } | Self::Belief { film } => (vec![film], true),
             Self::Pair { left, right } => (vec![left, right], true),
         };
-        json!({ "id": id, "kind": self.kind(), "films": films, "all": all })
+        json!({ "id": id, "kind": self.kind().word(), "films": films, "all": all })
     }
 }
 

@@ -276,7 +276,7 @@ fn draw_ends(
     }
 }
 
-/// Who meets the robot more than once.
+/// The people who meet the robot more than once.
 pub(crate) fn several(recording: &Recording) -> BTreeSet<HumanId> {
     let again =
         |kind: &EventKind| if let EventKind::Encounter { human, nth: 2.., .. } = kind { Some(*human) } else { None };

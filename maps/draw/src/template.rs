@@ -87,6 +87,9 @@ mod tests {
             include_str!("web/compare.js"),
             include_str!("web/labels.html"),
             include_str!("web/labels.js"),
+            include_str!("web/observe.html"),
+            include_str!("web/observe.js"),
+            include_str!("web/raters.js"),
             include_str!("web/tracks.html"),
             include_str!("web/tracks.js"),
         ];

@@ -9,7 +9,7 @@
 //! common) and dynamic time warping of tracks in m. Nodes and meters of two locations have nothing to do with each other, so only
 //! pairs on one location are compared.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
@@ -141,7 +141,7 @@ fn track(run: &Recording) -> Vec<[f64; 2]> {
 /// Edits that make one way of the other, over the longer of both.
 fn edits(one: &[NodeId], other: &[NodeId]) -> f64 {
     let longer = one.len().max(other.len());
-    let (one, other) = (one.to_vec(), other.to_vec());
+    let (one, other): (Vec<&NodeId>, Vec<&NodeId>) = (one.iter().collect(), other.iter().collect());
     let edits = strsim::generic_levenshtein(&one, &other);
     #[expect(clippy::cast_precision_loss, reason = "ways have few nodes")]
     let share = edits as f64 / longer.max(1) as f64;
@@ -183,7 +183,7 @@ type Kind<'k> = (&'k str, &'k str, &'k dyn Fn(&Pair) -> Option<f64>);
 
 /// Prints the pairs of a location in short, and gives them for programs.
 fn tell(talk: &Printer, place: &str, all: &[One], pairs: &[Pair]) -> Value {
-    let scenarios: std::collections::BTreeSet<usize> = pairs.iter().flat_map(|pair| [pair.one, pair.other]).collect();
+    let scenarios: BTreeSet<usize> = pairs.iter().flat_map(|pair| [pair.one, pair.other]).collect();
     talk.line(&format!("{place:<10} {} scenarios, {} pairs", scenarios.len(), pairs.len()));
     let mut values = serde_json::Map::new();
     let kinds: [Kind<'_>; 3] = [
@@ -214,11 +214,7 @@ fn tell(talk: &Printer, place: &str, all: &[One], pairs: &[Pair]) -> Value {
 }
 
 /// The distance of each scenario to its nearest.
-fn nearest(
-    scenarios: &std::collections::BTreeSet<usize>,
-    pairs: &[Pair],
-    of: &dyn Fn(&Pair) -> Option<f64>,
-) -> Vec<f64> {
+fn nearest(scenarios: &BTreeSet<usize>, pairs: &[Pair], of: &dyn Fn(&Pair) -> Option<f64>) -> Vec<f64> {
     let own = |index: &usize| {
         pairs.iter().filter(|pair| pair.one == *index || pair.other == *index).filter_map(of).reduce(f64::min)
     };

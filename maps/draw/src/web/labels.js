@@ -2,35 +2,26 @@
   const { View, controls, word, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
+  const { has, clean, kept, shuffler, save } = raters;
   const COLUMNS = data.columns, QUESTIONS = data.questions;
   // An answer that something was not as asked comes with the words.
   const NAMES = COLUMNS.includes("sentence"), AGREES = "as_asked";
   const KEY = "socrates-labels-" + data.key;
   if (!data.runs.length) { at("none").hidden = false; at("stage").hidden = true; return; }
 
-  // Answers by rater, by run. A browser that keeps nothing still labels; the table can be saved all the same.
-  let kept = {};
-  try { kept = JSON.parse(localStorage.getItem(KEY)) || {}; } catch { kept = {}; }
-  if (typeof kept !== "object" || Array.isArray(kept)) kept = {};
-  const keep = () => { try { localStorage.setItem(KEY, JSON.stringify({ rater, answers })); } catch { /* nothing is kept */ } };
-  let rater = typeof kept.rater === "string" ? kept.rater : "", answers = kept.answers && typeof kept.answers === "object" ? kept.answers : {};
+  // Answers by rater, by run.
+  const book = kept(KEY), mine = () => book.of(rater), keep = () => book.keep(rater);
+  let rater = book.rater;
   let order = [], place = 0, run = null, view = null;
-  const mine = () => { const own = Object.prototype.hasOwnProperty.call(answers, rater) ? answers[rater] : {}; return own; };
-  const of = (r) => (Object.prototype.hasOwnProperty.call(mine(), r.name) ? mine()[r.name] : {});
+  const of = (r) => (has(mine(), r.name) ? mine()[r.name] : {});
   const owes = (r) => NAMES && of(r).as_asked && of(r).as_asked !== AGREES;
   const whole = (r) => QUESTIONS.every((q) => of(r)[q.id]) && (!owes(r) || Boolean(of(r).sentence));
-  // Nothing in a name that would need quotes in a table.
-  const clean = (name) => name.replace(/[",;\r\n\t]/g, " ").replace(/^[=+@-]+/, "").replace(/\s+/g, " ").trim();
 
   // Every rater has an order of their own, always the same, so that fatigue does not fall on the same runs.
   function shuffle() {
-    let state = 2166136261;
-    for (const c of data.key + rater) state = Math.imul(state ^ c.codePointAt(0), 16777619) >>> 0;
-    const draw = () => { state = (Math.imul(state, 1664525) + 1013904223) >>> 0; return state / 4294967296; };
-    order = data.runs.map((r, i) => i);
+    const numbers = data.runs.map((r, i) => i);
     // Runs that are known by their numbers stay in the order of these.
-    if (data.named) return;
-    for (let i = order.length - 1; i > 0; i--) { const j = Math.floor(draw() * (i + 1)); [order[i], order[j]] = [order[j], order[i]]; }
+    order = data.named ? numbers : shuffler(data.key + rater)(numbers);
   }
 
   const own = { ...Object.fromEntries(QUESTIONS[0].answers.map(([what, key]) => [key, () => answer(what)])), x: () => undo(), p: () => choose(place - 1) };
@@ -86,9 +77,8 @@
   }
   function set(id, answer) {
     if (!rater) return;
-    if (!Object.prototype.hasOwnProperty.call(answers, rater)) answers[rater] = {};
-    const own = answers[rater];
-    if (!Object.prototype.hasOwnProperty.call(own, run.name)) own[run.name] = {};
+    const own = book.own(rater);
+    if (!has(own, run.name)) own[run.name] = {};
     if (answer) own[run.name][id] = answer; else delete own[run.name][id];
     if (!owes(run)) delete own[run.name].sentence;
     keep(); ask();
@@ -109,13 +99,6 @@
     const cell = (text) => (/[",\r\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
     const rows = data.runs.filter(whole).map((r) => COLUMNS.map((column) => ({ run: r.name, rater })[column] ?? of(r)[column] ?? ""));
     return [COLUMNS, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
-  }
-  function save() {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([csv()], { type: "text/csv" }));
-    link.download = "labels-" + (rater.replace(/[^\w-]+/g, "_") || "nobody") + ".csv";
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
   function open() {
     for (let step = 1; step <= order.length; step++) {
@@ -140,7 +123,7 @@
   at("back").addEventListener("click", () => choose(place - 1));
   at("next").addEventListener("click", () => choose(place + 1));
   at("open").addEventListener("click", open);
-  at("export").addEventListener("click", save);
+  at("export").addEventListener("click", () => save(csv(), "labels", rater));
   addEventListener("resize", () => { if (!view) return; view.lay(run.focus); view.show(clock.now); });
   addEventListener("keydown", (e) => { if (e.key === "Enter" && !/^(BUTTON|INPUT|SUMMARY|SELECT|TEXTAREA)$/.test(e.target.tagName)) choose(place + 1); });
   shuffle();

@@ -2,32 +2,19 @@
   const { View, Clock, make, word, seconds, secs } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
+  const { clean, kept, shuffler, save } = raters;
   const KEY = "socrates-observers-" + data.key, HZ = 10;
   if (!data.tasks.length) { at("none").hidden = false; at("stage").hidden = true; return; }
 
-  // Answers by rater, by task. A browser that keeps nothing still answers; the table can be saved all the same.
-  let kept = {};
-  try { kept = JSON.parse(localStorage.getItem(KEY)) || {}; } catch { kept = {}; }
-  if (typeof kept !== "object" || Array.isArray(kept)) kept = {};
-  let rater = typeof kept.rater === "string" ? kept.rater : "";
-  const answers = kept.answers && typeof kept.answers === "object" ? kept.answers : {};
-  const keep = () => { try { localStorage.setItem(KEY, JSON.stringify({ rater, answers })); } catch { /* nothing is kept */ } };
-  const mine = () => (Object.prototype.hasOwnProperty.call(answers, rater) ? answers[rater] : {});
-  // Nothing in a name that would need quotes in a table.
-  const clean = (name) => name.replace(/[",;\r\n\t]/g, " ").replace(/^[=+@-]+/, "").replace(/\s+/g, " ").trim();
+  // Answers by rater, by task.
+  const book = kept(KEY), mine = () => book.of(rater);
+  let rater = book.rater;
   let order = [], task = null, views = [], answer = null, ended = false;
 
   // Every rater has an order of their own, always the same: sliders, then beliefs, then pairs. Films that come again come in the
   // first half and at the end, with all others in between.
   function deal() {
-    let state = 2166136261;
-    for (const c of data.key + rater) state = Math.imul(state ^ c.codePointAt(0), 16777619) >>> 0;
-    const draw = () => { state = (Math.imul(state, 1664525) + 1013904223) >>> 0; return state / 4294967296; };
-    const shuffled = (list) => {
-      const all = [...list];
-      for (let i = all.length - 1; i > 0; i--) { const j = Math.floor(draw() * (i + 1)); [all[i], all[j]] = [all[j], all[i]]; }
-      return all;
-    };
+    const shuffled = shuffler(data.key + rater);
     const of = (kind) => data.tasks.filter((t) => t.kind === kind);
     const again = of("again"), twice = new Set(again.map((t) => t.films[0]));
     const first = of("rate").filter((t) => t.all), others = shuffled(of("rate").filter((t) => !t.all)).slice(0, data.each);
@@ -125,9 +112,8 @@
   const ready = () => { at("next").disabled = !(ended && answer !== null); };
   function next() {
     if (at("next").disabled || !rater) return;
-    if (!Object.prototype.hasOwnProperty.call(answers, rater)) answers[rater] = {};
-    answers[rater][task.id] = answer;
-    keep(); show();
+    book.own(rater)[task.id] = answer;
+    book.keep(rater); show();
   }
   function progress() {
     const done = order.filter((t) => mine()[t.id] !== undefined).length;
@@ -147,20 +133,13 @@
     return rows.map((row) => row.join(",")).join("\n") + "\n";
   }
   globalThis.observed = csv;
-  function save() {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([csv()], { type: "text/csv" }));
-    link.download = "observer-" + (rater.replace(/[^\w-]+/g, "_") || "nobody") + ".csv";
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-  }
 
   at("rater").value = rater;
   at("rater").addEventListener("input", (e) => { rater = clean(e.target.value); if (task && !clock.playing && !ended) { deal(); show(); } });
-  at("rater").addEventListener("change", () => { at("rater").value = rater; keep(); clock.play(false); deal(); show(); });
+  at("rater").addEventListener("change", () => { at("rater").value = rater; book.keep(rater); clock.play(false); deal(); show(); });
   at("play").addEventListener("click", () => { if (!rater || ended) return; at("rater").disabled = true; document.querySelector("details").open = false; at("stage").scrollIntoView(); clock.play(true); });
   at("next").addEventListener("click", next);
-  at("export").addEventListener("click", save);
+  at("export").addEventListener("click", () => save(csv(), "observer", rater));
   addEventListener("resize", () => { for (const view of views) { view.lay(view.focus); view.show(Math.min(clock.now, view.end)); } });
   // A film that nobody looks at does not run on.
   addEventListener("visibilitychange", () => { if (document.hidden && clock.playing) { clock.play(false); at("play").disabled = false; } });

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
-use serde_json::json;
-use socrates_draw::{Look, ObservePage, Observed};
+use serde_json::{Value, json};
+use socrates_draw::{Look, LookKind, ObservePage, Observed};
 use socrates_model::seeds::stream_seed;
 use socrates_model::{Point, Recording};
 use socrates_scoring::fidelity::Signals;
@@ -113,19 +113,21 @@ pub fn observe(talk: &Printer, options: &ObserveOptions) -> Result<(), Complaint
     let key = options.out.parent().map_or_else(PathBuf::new, Path::to_path_buf).join(task::FILE);
     let rows: Vec<Task> = tasks.into_iter().map(|(task, _)| task).collect();
     files::write(&key, task::write(&rows).as_bytes())?;
-    let count = |kind: &str| rows.iter().filter(|task| task.look == kind).count();
+    let count = |kind: LookKind| rows.iter().filter(|task| task.kind == kind).count();
     talk.line(&format!("wrote      {} · {} films", options.out.display(), films.len()));
     talk.line(&format!(
         "asks       {} sliders, {} again, {} beliefs, {} pairs",
-        count("rate"),
-        count("again"),
-        count("belief"),
-        count("pair")
+        count(LookKind::Rate),
+        count(LookKind::Again),
+        count(LookKind::Belief),
+        count(LookKind::Pair)
     ));
+    let counts: serde_json::Map<String, Value> =
+        LookKind::ALL.iter().map(|kind| (kind.word().to_owned(), count(*kind).into())).collect();
     talk.line(&format!("key        {} tells which film is which: keep it from the observers", key.display()));
     talk.result(&json!({
         "page": options.out.display().to_string(), "key": key.display().to_string(), "films": films.len(),
-        "tasks": { "rate": count("rate"), "again": count("again"), "belief": count("belief"), "pair": count("pair") },
+        "tasks": counts,
     }));
     Ok(())
 }
@@ -206,7 +208,7 @@ fn tasks(
         };
         let ([film, run, planner], [other, other_run, other_planner]) = (of(one), of(other));
         let id = format!("t{:03}", number + 1);
-        (Task { id, look: look.kind().to_owned(), film, run, planner, other, other_run, other_planner, truth }, look)
+        (Task { id, kind: look.kind(), film, run, planner, other, other_run, other_planner, truth }, look)
     };
     Ok(looks.into_iter().enumerate().map(row).collect())
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
+use socrates_draw::LookKind;
 use socrates_stream::csv::joined;
 use socrates_study::observe::{
     Agreement, BELIEF_HZ, Believed, Choice, Coefficient, FilmMean, Kept, Prefers, Rater, Slide, Trace, agreement,
@@ -105,7 +106,7 @@ fn read(tables: &[(String, String)], tasks: &[Task]) -> Result<Said, Complaint> 
                 door.wrong(&row, &format!("the question `{id}` is not in the key"));
                 continue;
             };
-            let belief = task.look == "belief";
+            let belief = task.kind == LookKind::Belief;
             let t = match row.cell("t") {
                 "" => None,
                 text => match text.parse::<f64>().ok().filter(|t| t.is_finite() && *t >= 0.0) {
@@ -122,9 +123,9 @@ fn read(tables: &[(String, String)], tasks: &[Task]) -> Result<Said, Complaint> 
                 continue;
             }
             let number = value.parse::<f64>().ok().filter(|value| (0.0..=1.0).contains(value));
-            let fits = if task.look == "pair" { prefers(&value).is_some() } else { number.is_some() };
+            let fits = if task.kind == LookKind::Pair { prefers(&value).is_some() } else { number.is_some() };
             if !fits {
-                let allowed = if task.look == "pair" { "left, equal, right" } else { "0 to 1" };
+                let allowed = if task.kind == LookKind::Pair { "left, equal, right" } else { "0 to 1" };
                 door.wrong(&row, &format!("`value` is `{value}`; allowed: {allowed}"));
                 continue;
             }
@@ -151,8 +152,8 @@ fn read(tables: &[(String, String)], tasks: &[Task]) -> Result<Said, Complaint> 
 /// Adds the answers to one question; the time of the first gap in a belief where there is one.
 fn add(said: &mut Said, task: &Task, rater: &str, mut told: Vec<(Option<f64>, String)>) -> Option<f64> {
     let number = |text: &str| text.parse::<f64>().ok();
-    match task.look.as_str() {
-        "belief" => {
+    match task.kind {
+        LookKind::Belief => {
             told.sort_by(|a, b| a.0.unwrap_or(0.0).total_cmp(&b.0.unwrap_or(0.0)));
             let mut values = Vec::with_capacity(told.len());
             for (place, (t, text)) in told.iter().enumerate() {
@@ -166,7 +167,7 @@ fn add(said: &mut Said, task: &Task, rater: &str, mut told: Vec<(Option<f64>, St
             }
             said.traces.push(Trace { rater: rater.to_owned(), film: task.film.clone(), values });
         }
-        "pair" => {
+        LookKind::Pair => {
             let choice = told.first().and_then(|(_, text)| prefers(text)).map(|prefers| Choice {
                 left: task.planner.clone(),
                 right: task.other_planner.clone(),
@@ -174,8 +175,8 @@ fn add(said: &mut Said, task: &Task, rater: &str, mut told: Vec<(Option<f64>, St
             });
             said.choices.extend(choice.map(|choice| (rater.to_owned(), choice)));
         }
-        look => {
-            let occasion = if look == "again" { 2 } else { 1 };
+        LookKind::Rate | LookKind::Again => {
+            let occasion = if task.kind == LookKind::Again { 2 } else { 1 };
             let slide = told.first().and_then(|(_, text)| number(text)).map(|value| Slide {
                 rater: rater.to_owned(),
                 film: task.film.clone(),

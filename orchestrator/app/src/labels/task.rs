@@ -1,5 +1,6 @@
 //! The key of a page for observers: what each question is about, and to which side a belief should go.
 
+use socrates_draw::LookKind;
 use socrates_stream::csv::joined;
 
 use super::door::Door;
@@ -8,8 +9,6 @@ use crate::exit::Complaint;
 /// Its name beside the page.
 pub(super) const FILE: &str = "observe-key.csv";
 const COLUMNS: [&str; 9] = ["task", "kind", "film", "run", "planner", "other", "other_run", "other_planner", "truth"];
-/// The kinds of questions.
-const KINDS: [&str; 4] = ["rate", "again", "belief", "pair"];
 
 /// The place that was the robot's goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,8 +31,7 @@ impl Truth {
 pub(super) struct Task {
     /// `t001`.
     pub(super) id: String,
-    /// `rate`, `again`, `belief` or `pair`.
-    pub(super) look: String,
+    pub(super) kind: LookKind,
     pub(super) film: String,
     pub(super) run: String,
     pub(super) planner: String,
@@ -51,8 +49,9 @@ pub(super) fn write(tasks: &[Task]) -> String {
     out.push('\n');
     for task in tasks {
         let truth = task.truth.map_or("", Truth::word);
-        let Task { id, look, film, run, planner, other, other_run, other_planner, .. } = task;
-        out.push_str(&joined([id.as_str(), look, film, run, planner, other, other_run, other_planner, truth]));
+        let kind = task.kind.word();
+        let Task { id, film, run, planner, other, other_run, other_planner, .. } = task;
+        out.push_str(&joined([id.as_str(), kind, film, run, planner, other, other_run, other_planner, truth]));
         out.push('\n');
     }
     out
@@ -63,23 +62,24 @@ pub(super) fn read(text: &str, file: &str) -> Result<Vec<Task>, Complaint> {
     let mut door = Door::default();
     let mut found: Vec<Task> = Vec::new();
     for row in door.rows(text, file, &COLUMNS) {
-        let [Some(id), Some(look), Some(film), Some(run), Some(planner)] =
+        let [Some(id), Some(word), Some(film), Some(run), Some(planner)] =
             ["task", "kind", "film", "run", "planner"].map(|column| door.filled(&row, column))
         else {
             continue;
         };
-        if !KINDS.contains(&look.as_str()) {
-            door.wrong(&row, &format!("`kind` is `{look}`; allowed: {}", KINDS.join(", ")));
+        let Some(kind) = LookKind::ALL.into_iter().find(|kind| kind.word() == word) else {
+            let allowed = LookKind::ALL.map(LookKind::word).join(", ");
+            door.wrong(&row, &format!("`kind` is `{word}`; allowed: {allowed}"));
             continue;
-        }
-        let truth = match (look.as_str(), row.cell("truth")) {
-            ("belief", "a") => Some(Truth::A),
-            ("belief", "b") => Some(Truth::B),
-            ("belief", other) => {
+        };
+        let truth = match row.cell("truth") {
+            _ if kind != LookKind::Belief => None,
+            "a" => Some(Truth::A),
+            "b" => Some(Truth::B),
+            other => {
                 door.wrong(&row, &format!("`truth` of a belief is `{other}`; allowed: a, b"));
                 continue;
             }
-            (_, _) => None,
         };
         if found.iter().any(|known| known.id == id) {
             door.wrong(&row, &format!("the question `{id}` stands there twice"));
@@ -87,11 +87,11 @@ pub(super) fn read(text: &str, file: &str) -> Result<Vec<Task>, Complaint> {
         }
         let cell = |column: &str| row.cell(column).to_owned();
         let (other, other_run, other_planner) = (cell("other"), cell("other_run"), cell("other_planner"));
-        if look == "pair" && (other.is_empty() || other_planner.is_empty()) {
+        if kind == LookKind::Pair && (other.is_empty() || other_planner.is_empty()) {
             door.wrong(&row, "a pair has an `other` film and an `other_planner`; one of them is empty");
             continue;
         }
-        found.push(Task { id, look, film, run, planner, other, other_run, other_planner, truth });
+        found.push(Task { id, kind, film, run, planner, other, other_run, other_planner, truth });
     }
     door.shut("the key", "take the observe-key.csv that was written beside the page, as it is", found)
 }
@@ -102,9 +102,9 @@ mod tests {
 
     #[test]
     fn a_key_is_read_as_it_was_written_and_what_is_wrong_is_told() {
-        let task = |id: &str, look: &str, other: &str, truth: Option<Truth>| Task {
+        let task = |id: &str, kind: LookKind, other: &str, truth: Option<Truth>| Task {
             id: id.into(),
-            look: look.into(),
+            kind,
             film: "r01".into(),
             run: "x-1.orca-1".into(),
             planner: "orca".into(),
@@ -114,9 +114,9 @@ mod tests {
             truth,
         };
         let all = [
-            task("t001", "rate", "", None),
-            task("t002", "belief", "", Some(Truth::B)),
-            task("t003", "pair", "r02", None),
+            task("t001", LookKind::Rate, "", None),
+            task("t002", LookKind::Belief, "", Some(Truth::B)),
+            task("t003", LookKind::Pair, "r02", None),
         ];
         assert_eq!(read(&write(&all), "observe-key.csv").unwrap(), all);
         let head = write(&[]);

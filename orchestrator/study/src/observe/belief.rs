@@ -173,7 +173,7 @@ mod tests {
         let found = &believed(&[trace("a", doubt)])[0];
         assert!((found.readiness_s - 2.0).abs() < 1e-9, "{found:?}");
         assert!((found.confusions - 1.0).abs() < 1e-9);
-        // Who is wrong at the end was never ready.
+        // A viewer who is wrong at the end was never ready.
         let wrong: Vec<f64> = rise(2.0, 6.0).into_iter().map(|belief| 1.0 - belief).collect();
         let found = &believed(&[trace("a", wrong)])[0];
         assert_eq!((found.readiness_s, found.confusions), (0.0, 1.0));
@@ -188,7 +188,7 @@ mod tests {
         let found = &believed(&all)[0];
         assert!(found.agreement_undelayed.unwrap() > found.agreement.unwrap() + 0.2, "{found:?}");
         assert!(found.agreement_undelayed.unwrap() > 0.95 && found.reliability.unwrap() > 0.5, "{found:?}");
-        // Who never moves the slider agrees with nobody, and that is no 0.
+        // A viewer who never moves the slider agrees with nobody, and that is no 0.
         let still = [trace("a", wave(0.0)), trace("b", vec![0.5; 201])];
         assert_eq!((believed(&still)[0].agreement, believed(&still)[0].delay_s), (None, None));
     }

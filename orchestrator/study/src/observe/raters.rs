@@ -1,4 +1,4 @@
-//! Who of the raters agrees with themself and with the others, and how far the others agree.
+//! How far each rater agrees with themself and with the others, and all of them together.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use crate::stats::{Clustered, Level, clustered_bca, krippendorff, weighted_kappa
 /// A rater is kept whose agreement with themself and with the mean of the reference is above these (`SocNav3`, `select_valid_raters`).
 const OWN: f64 = 0.1;
 const OTHERS: f64 = 0.2;
-/// Who agrees with themself by more than this is of the reference.
+/// A rater who agrees with themself by more than this is of the reference.
 const REFERENCE: f64 = 0.4;
 /// Steps of the slider for agreement: 11 levels, 0 to 10.
 const STEPS: f64 = 10.0;
@@ -67,6 +67,15 @@ fn firsts(slides: &[Slide]) -> BTreeMap<&str, BTreeMap<&str, f64>> {
         found.entry(&slide.rater).or_default().insert(&slide.film, slide.value);
     }
     found
+}
+
+/// First answers by film.
+fn by_film(slides: &[Slide]) -> BTreeMap<&str, Vec<f64>> {
+    let mut films: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
+    for slide in slides.iter().filter(|slide| slide.occasion == 1) {
+        films.entry(&slide.film).or_default().push(slide.value);
+    }
+    films
 }
 
 /// Kappa of pairs, where all answers of both being one and the same is full agreement.
@@ -142,11 +151,7 @@ pub struct Coefficient {
 /// Agreement of the first answers of these raters.
 #[must_use]
 pub fn agreement(slides: &[Slide]) -> Agreement {
-    let mut films: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    for slide in slides.iter().filter(|slide| slide.occasion == 1) {
-        films.entry(&slide.film).or_default().push(slide.value);
-    }
-    let units: Vec<Vec<f64>> = films.into_values().filter(|values| values.len() > 1).collect();
+    let units: Vec<Vec<f64>> = by_film(slides).into_values().filter(|values| values.len() > 1).collect();
     let alpha = [Level::Nominal, Level::Ordinal, Level::Interval].map(|by| {
         let units: Vec<Vec<f64>> = match by {
             Level::Interval => units.clone(),
@@ -180,16 +185,12 @@ pub struct FilmMean {
 /// The mean of each film over first answers, in the order of their names.
 #[must_use]
 pub fn means(slides: &[Slide]) -> Vec<FilmMean> {
-    let mut films: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    for slide in slides.iter().filter(|slide| slide.occasion == 1) {
-        films.entry(&slide.film).or_default().push(slide.value);
-    }
     let mean = |(film, values): (&str, Vec<f64>)| {
         let mean = socrates_stats::mean(&values).ok()?;
         let sd = socrates_stats::sample_sd(&values).ok();
         Some(FilmMean { film: film.to_owned(), raters: values.len(), mean, sd })
     };
-    films.into_iter().filter_map(mean).collect()
+    by_film(slides).into_iter().filter_map(mean).collect()
 }
 
 #[cfg(test)]

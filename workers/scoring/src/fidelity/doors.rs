@@ -6,7 +6,7 @@ use socrates_model::{Door, DoorOpens, EventKind, Location, NodeId, Point, Record
 use crate::tracks::Sample;
 
 /// A crossing counts this far beyond the ends of the door line, m: people cut the frame's corner.
-const FRAME_M: f64 = 0.3;
+pub(crate) const FRAME_M: f64 = 0.3;
 
 /// Doors of a location with the changes that the recording tells.
 #[derive(Debug, Clone)]
@@ -107,24 +107,30 @@ pub(super) fn inside_point(door: &Door, location: &Location) -> Option<Point> {
     Some(first + points.iter().map(|point| point - first).sum::<socrates_model::Vector>() / count)
 }
 
-/// Crossings of the door line by a track, in time order.
-#[must_use]
-pub(super) fn crossings(door: &Door, inside: &Point, samples: &[Sample]) -> Vec<Crossing> {
+/// The pieces of a track that lead over the door line, in time order: both samples, and how far each lies on the side that counts as
+/// positive, m.
+pub(crate) fn pieces_over<'s>(
+    door: &Door,
+    samples: &'s [Sample],
+    depth_m: impl Fn(&Point) -> f64,
+) -> impl Iterator<Item = ((&'s Sample, f64), (&'s Sample, f64))> {
     let along = door.to - door.from;
     let length = along.norm();
-    if length <= 0.0 {
-        return Vec::new();
-    }
     let frame = along * (FRAME_M / length);
     let (from, to) = (door.from - frame, door.to + frame);
     samples
         .iter()
         .zip(samples.iter().skip(1))
-        .filter(|(a, b)| a.there && b.there && segments_cross(&a.at, &b.at, &from, &to))
-        .filter_map(|(a, b)| {
-            let (before, after) = (door.depth_m(&a.at, inside), door.depth_m(&b.at, inside));
-            // A sample exactly on the line belongs to the piece that ends there.
-            ((before > 0.0) != (after > 0.0)).then_some(Crossing { t: b.t, outward: before > 0.0 })
-        })
+        .filter(move |(a, b)| length > 0.0 && a.there && b.there && segments_cross(&a.at, &b.at, &from, &to))
+        .map(move |(a, b)| ((a, depth_m(&a.at)), (b, depth_m(&b.at))))
+        // A sample exactly on the line belongs to the piece that ends there.
+        .filter(|((_, before), (_, after))| (*before > 0.0) != (*after > 0.0))
+}
+
+/// Crossings of the door line by a track, in time order.
+#[must_use]
+pub(super) fn crossings(door: &Door, inside: &Point, samples: &[Sample]) -> Vec<Crossing> {
+    pieces_over(door, samples, |at| door.depth_m(at, inside))
+        .map(|((_, before), (b, _))| Crossing { t: b.t, outward: before > 0.0 })
         .collect()
 }

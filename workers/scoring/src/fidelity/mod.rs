@@ -11,7 +11,7 @@ mod clauses;
 mod company;
 mod coverage;
 mod crowd;
-mod doors;
+pub(crate) mod doors;
 mod doorway;
 mod faces;
 mod finding;

@@ -1,4 +1,4 @@
-//! Who is headed straight for whom: headings in place of gazes.
+//! Times at which somebody is headed straight for somebody else: headings in place of gazes.
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};

@@ -1,15 +1,13 @@
 //! Doors: in which order robot and people go through, and how many people go through in a time.
 
-use socrates_model::geometry::segments_cross;
-use socrates_model::{Door, Point};
+use socrates_model::Door;
 
+use crate::fidelity::doors::{FRAME_M, pieces_over};
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count};
 use crate::tracks::Track;
 
 /// Somebody nearer to the middle of a door than this has come to it, m.
 const AT_DOOR_M: f64 = 2.0;
-/// A crossing counts this far beyond the ends of the door line, m: people cut the frame's corner.
-const FRAME_M: f64 = 0.3;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
@@ -38,19 +36,8 @@ pub(super) const FAMILY: Family = Family {
 /// When a track crosses the line of a door, s, in order.
 fn crossings(door: &Door, track: &Track) -> Vec<f64> {
     let along = door.to - door.from;
-    let Some(unit) = along.try_normalize(1e-9) else { return Vec::new() };
-    let (from, to) = (door.from - unit * FRAME_M, door.to + unit * FRAME_M);
-    let side = |at: &Point| along.perp(&(at - door.from));
-    track
-        .samples
-        .iter()
-        .zip(track.samples.iter().skip(1))
-        .filter(|(a, b)| a.there && b.there && segments_cross(&a.at, &b.at, &from, &to))
-        .filter_map(|(a, b)| {
-            let (before, after) = (side(&a.at), side(&b.at));
-            // A sample exactly on the line belongs to the piece that ends there.
-            ((before > 0.0) != (after > 0.0)).then(|| a.t + (b.t - a.t) * before / (before - after))
-        })
+    pieces_over(door, &track.samples, |at| along.perp(&(at - door.from)))
+        .map(|((a, before), (b, after))| a.t + (b.t - a.t) * before / (before - after))
         .collect()
 }
 
@@ -110,7 +97,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
 
 #[cfg(test)]
 mod tests {
-    use socrates_model::{AgentId, Location};
+    use socrates_model::{AgentId, Location, Point};
 
     use super::*;
     use crate::evidence::Evidence;

@@ -19,7 +19,7 @@ use crate::running::{AreaBelow, Below, Least, MeanWhileBelow, Pen};
 
 /// SEAN's radius of the goal, m.
 const SEAN_GOAL_M: f64 = 1.2;
-/// Who gets less far than this in this time does not move (SEAN), m and s.
+/// A robot that gets less far than this in this time does not move (SEAN), m and s.
 const SEAN_STILL_M: f64 = 0.05;
 const SEAN_STILL_SECS: f64 = 1.0;
 /// Arena's personal space, m between centers.
