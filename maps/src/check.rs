@@ -297,16 +297,14 @@ fn line_problems(location: &Location, door: &Door, fault: &mut impl FnMut(FaultC
     let along = (door.to - door.from).normalize();
     // Behind a thin wall that the door's line meets lies the floor of somebody else.
     let steps = (1..=DOOR_STEPS).map(|step| DOOR_SLACK_M * f64::from(step) / f64::from(DOOR_STEPS));
-    // The tip of a wall that bends away from the door's line stands right beside the end.
-    let beside_m = 1.5 * location.grid.resolution_m;
-    let touches = |end: &Point| {
-        (0..8_u32).any(|turn| {
-            let (sin, cos) = libm::sincos(f64::from(turn) * std::f64::consts::FRAC_PI_4);
-            !location.grid.is_free(&(end + Vector::new(cos, sin) * beside_m))
-        })
+    // A wall that bends away from the door's line begins beside the line's end, half a right angle off it.
+    let beside_m = (1.5 * location.grid.resolution_m).min(DOOR_SLACK_M);
+    let touches = |end: &Point, outward: &Vector| {
+        let half = Vector::new(-outward.y, outward.x);
+        [outward + half, outward - half].iter().any(|way| !location.grid.is_free(&(end + way.normalize() * beside_m)))
     };
     for (end, outward) in [(door.from, -along), (door.to, along)] {
-        if touches(&end) {
+        if touches(&end, &outward) {
             continue;
         }
         if steps.clone().all(|off_m| location.grid.is_free(&(end + outward * off_m))) {

@@ -10,6 +10,9 @@ const LONGEST_M: f64 = 5.5;
 /// Twice the area over the rim of what is thicker than a free piece of wall, m: a wall of 0.3 m has less, a desk of 1.6 by 0.8 m 0.5.
 const THICK_M: f64 = 0.32;
 
+/// A free piece of wall shorter than this is no wall of a door, m: a bench, a leg of a table, a post.
+const PIECE_M: f64 = 1.2;
+
 /// Walls with less than this between them are one, m: scanners leave gaps in outlines.
 const GAP_M: f64 = 0.3;
 /// Sides of a block, m: a pier of a wall is thinner, no room is smaller than its walls.
@@ -39,7 +42,11 @@ impl Marked {
 }
 
 /// Free-standing things of a map, by its cells.
-pub(crate) struct Things(Marked);
+pub(crate) struct Things {
+    furniture: Marked,
+    /// Whether the part of this number, from 0, is too short for a wall.
+    is_piece: Vec<bool>,
+}
 
 #[expect(
     clippy::cast_precision_loss,
@@ -71,27 +78,35 @@ impl Things {
             let free = !part.extent.is_at_rim((grid.width, grid.height)) && part.extent.longest() <= longest;
             free && thick_m > THICK_M
         });
-        Self(Marked { is_marked: is_thing.collect(), of_cell })
+        let is_marked = is_thing.collect();
+        let short = (PIECE_M / grid.resolution_m) as usize;
+        let is_piece = |part: &Part| !part.extent.is_at_rim((grid.width, grid.height)) && part.extent.longest() < short;
+        Self { is_piece: found.iter().map(is_piece).collect(), furniture: Marked { is_marked, of_cell } }
     }
 
     /// No things.
     pub(crate) fn none() -> Self {
-        Self(Marked::none())
+        Self { furniture: Marked::none(), is_piece: Vec::new() }
     }
 
     /// Frees the cells of all things; says whether there are any.
     pub(crate) fn clear_away(&self, grid: &mut Grid) -> bool {
-        for (cell, number) in grid.cells.iter_mut().zip(&self.0.of_cell.values) {
-            if self.0.has(*number) {
+        for (cell, number) in grid.cells.iter_mut().zip(&self.furniture.of_cell.values) {
+            if self.furniture.has(*number) {
                 *cell = Kind::Free;
             }
         }
-        self.0.is_marked.contains(&true)
+        self.furniture.is_marked.contains(&true)
     }
 
-    /// Whether a thing lies at a pixel position.
+    /// Whether a thing, or a piece too short for a wall, lies at a pixel position.
     pub(crate) fn holds(&self, (px, py): (f64, f64)) -> bool {
-        px >= 0.0 && py >= 0.0 && self.0.at((px as usize, py as usize)).is_some()
+        if px < 0.0 || py < 0.0 {
+            return false;
+        }
+        let number = self.furniture.of_cell.get(px as usize, py as usize).unwrap_or(0);
+        let is_piece = (number as usize).checked_sub(1).and_then(|at| self.is_piece.get(at)) == Some(&true);
+        is_piece || self.furniture.has(number)
     }
 }
 

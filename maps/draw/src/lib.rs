@@ -57,6 +57,6 @@ pub use observe_page::{Look, LookKind, ObservePage, Observed};
 pub use page::{Page, ProvenanceRow, StageRow};
 pub use pdf::{PdfError, pdf_from_svg};
 pub use png::{PngError, png_at_dpi, png_from_svg};
-pub use run::run_picture;
+pub use run::{Heading, run_picture};
 pub use stills::contact_sheet;
 pub use track_page::{FigureRow, TrackPage};

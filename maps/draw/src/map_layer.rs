@@ -244,10 +244,20 @@ pub fn draw_graph(svg: &mut Svg, location: &Location, frame: &Frame, color: &str
     }
 }
 
+/// The round length of the scale bar of a frame, m.
+fn scale_m(location: &Location, frame: &Frame) -> f64 {
+    [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|m| frame.len(location, *m) >= 60.0).unwrap_or(100.0)
+}
+
+/// Where the words of the scale bar end, px from the left.
+pub(crate) fn scale_end_px(location: &Location, frame: &Frame) -> f64 {
+    const WORDS_PX: f64 = 48.0;
+    frame.at.0 + frame.len(location, scale_m(location, frame)) + WORDS_PX
+}
+
 /// A scale bar of a round length at the lower left of the frame.
 pub fn draw_scale(svg: &mut Svg, location: &Location, frame: &Frame, below: f64) {
-    let length_m =
-        [1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|m| frame.len(location, *m) >= 60.0).unwrap_or(100.0);
+    let length_m = scale_m(location, frame);
     let (x, y) = (frame.at.0, frame.at.1 + frame.size().1 + below);
     let w = frame.len(location, length_m);
     let ink = palette::QUIET;

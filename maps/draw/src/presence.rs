@@ -39,7 +39,8 @@ mod tests {
         assert_eq!(run.frames.iter().filter(|state| there.is(state)).count(), 60);
         let gone = away(comes(), 1, 0..40);
         let (place, (_, _, _, paths)) = (hall("hall"), papers("a hall"));
-        let picture = |run: &Recording| crate::run_picture(&place, run, Some(&paths), None, "a run");
+        let heading = crate::Heading { title: "a run", asked: "" };
+        let picture = |run: &Recording| crate::run_picture(&place, run, Some(&paths), None, heading);
         // The legend and the label are the human's only marks besides its discs.
         assert!(picture(&run).contains(">human_1<") && !picture(&gone).contains(">human_1<"));
         let curves = crate::series::curves(&run, 10);

@@ -8,7 +8,7 @@ use socrates_model::{
 };
 
 use crate::label::{Area, Labels, text_width, wrapped, wrapped_beside};
-use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
+use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, scale_end_px, wall_areas};
 use crate::marks::{draw_arrow, draw_body, draw_label, draw_legend, draw_line, draw_start, legend_px};
 use crate::palette;
 use crate::presence::There;
@@ -25,12 +25,23 @@ const LEAST_RADIUS_PX: f64 = 7.0;
 const TITLE_PX: f64 = 50.0;
 /// Most lines of the verdict's reason and of what the robot did: enough for a sentence with its cause at the end.
 const LINES: usize = 4;
+/// Most lines of what was asked for.
+const ASKED_LINES: usize = 3;
 /// The time of an encounter stands within so many rings around its mark: nobody must look for the mark of a time.
 const TIME_RINGS: usize = 3;
 /// From one line of the heading to the next, px.
 const LINE_PX: f64 = 18.0;
 /// Room of the small map beside the heading, px.
 const LOCATOR_PX: (f64, f64) = (190.0, 96.0);
+
+/// What stands over the picture of a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Heading<'a> {
+    /// The first line.
+    pub title: &'a str,
+    /// What was asked for, in words; nothing is drawn where it is empty.
+    pub asked: &'a str,
+}
 
 /// Draws the part of the map where it happens, every track with marks every 5 s, starts, ends and encounters, and a legend.
 #[must_use]
@@ -39,7 +50,7 @@ pub fn run_picture(
     recording: &Recording,
     paths: Option<&Paths>,
     report: Option<&Report>,
-    title: &str,
+    heading: Heading<'_>,
 ) -> String {
     let way = paths.map(|paths| location.graph.polyline(&paths.robot)).unwrap_or_default();
     let there = There::of(recording);
@@ -55,18 +66,21 @@ pub fn run_picture(
     let (w, h) = frame.size();
     let width = (w + 40.0).max(760.0);
     let beside = if focused { width - 40.0 - LOCATOR_PX.0 - 20.0 } else { width - 40.0 };
-    let told = report.map(|report| Told::of(report, beside, width - 40.0));
+    let told = report.map(|report| Told::of(report, heading.asked, beside, width - 40.0));
     let locator = if focused { LOCATOR_PX.1 + 22.0 } else { 0.0 };
     let head = told.as_ref().map_or(TITLE_PX, Told::bottom).max(locator);
     // A map that is narrower than the words stands in their middle.
     frame.at = ((width - w) / 2.0, head);
-    let height = head + h + 40.0 + legend_px(recording.header.agents.len()) + 14.0;
+    let marks = marks_told(location, width - 20.0 - scale_end_px(location, &frame), paths.is_some());
+    #[expect(clippy::cast_precision_loss, reason = "a few lines")]
+    let marks_px = marks.len().saturating_sub(MARKS_LINES) as f64 * MARKS_LINE_PX;
+    let height = head + h + 40.0 + marks_px + legend_px(recording.header.agents.len()) + 14.0;
     let mut svg = Svg::new(width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     if focused {
         draw_locator(&mut svg, location, &frame, width - 20.0, 10.0, LOCATOR_PX);
     }
-    svg.heading((20.0, 34.0), &wrapped(title, beside, 24.0, 1).concat(), 24.0, palette::INK);
+    svg.heading((20.0, 34.0), &wrapped(heading.title, beside, 24.0, 1).concat(), 24.0, palette::INK);
     if let Some(told) = told {
         told.draw(&mut svg);
     }
@@ -110,8 +124,20 @@ pub fn run_picture(
     }
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
     draw_scale(&mut svg, location, &frame, 18.0);
-    draw_marks_told(&mut svg, location, (width - 20.0, frame.at.1 + h + 18.0), width - 190.0, paths.is_some());
-    let legend: Vec<(u32, String)> = recording
+    let style = format!("font-size=\"{MARKS_PX}\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET);
+    let mut y = frame.at.1 + h + 18.0;
+    for line in &marks {
+        svg.text((width - 20.0, y), line, &style);
+        y += MARKS_LINE_PX;
+    }
+    let legend = legend(recording);
+    draw_legend(&mut svg, &legend, width, head + h + 54.0 + marks_px);
+    svg.finish()
+}
+
+/// Everybody's number and words for the legend.
+fn legend(recording: &Recording) -> Vec<(u32, String)> {
+    recording
         .header
         .agents
         .iter()
@@ -123,14 +149,18 @@ pub fn run_picture(
             };
             (info.agent.number(), text)
         })
-        .collect();
-    draw_legend(&mut svg, &legend, width, head + h + 54.0);
-    svg.finish()
+        .collect()
 }
 
-/// Says what each mark means, in at most two lines that end at `at` and are no wider than `room`.
-fn draw_marks_told(svg: &mut Svg, location: &Location, at: (f64, f64), room: f64, planned: bool) {
-    const SIZE_PX: f64 = 13.0;
+/// Size of the words that say what each mark means, px.
+const MARKS_PX: f64 = 13.0;
+/// From one line of them to the next, px.
+const MARKS_LINE_PX: f64 = MARKS_PX + 3.0;
+/// So many lines of them have room above the legend; each further one moves it down.
+const MARKS_LINES: usize = 2;
+
+/// What each mark means, in lines no wider than `room`.
+fn marks_told(location: &Location, room: f64, planned: bool) -> Vec<String> {
     let every = format!("arrow: every {MARK_SECS:.0} s");
     let told = [
         (true, "outline: start"),
@@ -142,16 +172,13 @@ fn draw_marks_told(svg: &mut Svg, location: &Location, at: (f64, f64), room: f64
         (true, "gray lines: ways of the map"),
     ];
     let told: Vec<&str> = told.into_iter().filter(|(drawn, _)| *drawn).map(|(_, what)| what).collect();
-    let style = format!("font-size=\"{SIZE_PX}\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET);
-    let mut y = at.1;
-    for line in wrapped(&told.join(" · "), room, SIZE_PX, 2) {
-        svg.text((at.0, y), line.trim_matches([' ', '·']), &style);
-        y += SIZE_PX + 3.0;
-    }
+    let lines = wrapped(&told.join(" · "), room, MARKS_PX, 4);
+    lines.iter().map(|line| line.trim_matches([' ', '·']).to_owned()).collect()
 }
 
-/// What the heading tells of a run: its verdict with the reason beside it, and what the robot did, in lines.
+/// What the heading tells of a run: what was asked for, the verdict with the reason beside it, and what the robot did, in lines.
 struct Told {
+    asked: Vec<String>,
     verdict: String,
     color: &'static str,
     pill: f64,
@@ -159,54 +186,68 @@ struct Told {
     robot: Vec<String>,
 }
 
+/// Where a line of the heading is, px, by how many lines there are above it.
+fn line_y(above: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a few lines")]
+    let above = above as f64;
+    63.0 + above * LINE_PX
+}
+
 impl Told {
     /// In lines `beside` the small map, and `below` it.
-    fn of(report: &Report, beside: f64, below: f64) -> Self {
+    fn of(report: &Report, asked: &str, beside: f64, below: f64) -> Self {
         let good = matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate);
         let verdict = report.verdict.name().replace('_', " ");
         let pill = text_width(&verdict, 15.0) + 22.0;
         let room = |y: f64| if y > LOCATOR_PX.1 + 10.0 + LINE_PX { below } else { beside };
+        let asked = wrapped_beside(asked, |line| room(line_y(line)), 14.0, ASKED_LINES);
+        let mut told = Self {
+            asked,
+            color: if good { palette::GOOD } else { palette::BAD },
+            reason: vec![],
+            robot: vec![],
+            verdict,
+            pill,
+        };
         // Names stand in `code` marks in texts; here there is nothing that would draw them.
         let text = report.verdict_text.replace('`', "");
-        let reason = wrapped_beside(&text, |line| room(Self::y(line)) - pill - 12.0, 15.0, LINES);
+        told.reason = wrapped_beside(&text, |line| room(told.y(line)) - pill - 12.0, 15.0, LINES);
         let robot = format!("{} · seed {}", report.robot_text, report.seed);
-        let robot = wrapped_beside(&robot, |line| room(Self::robot_y(reason.len(), line)), 14.0, LINES);
-        Self { color: if good { palette::GOOD } else { palette::BAD }, reason, robot, verdict, pill }
+        told.robot = wrapped_beside(&robot, |line| room(told.robot_y(line)), 14.0, LINES);
+        told
     }
 
-    /// Where the line of this number is, px.
-    fn y(line: usize) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "a few lines")]
-        let line = line as f64;
-        63.0 + line * LINE_PX
+    /// Where the line of this number of the reason is, px: below what was asked for, a little apart.
+    fn y(&self, line: usize) -> f64 {
+        line_y(self.asked.len() + line) + if self.asked.is_empty() { 0.0 } else { 8.0 }
     }
 
     /// Lines of the robot begin below those of the reason, a little apart.
-    fn robot_y(reasons: usize, line: usize) -> f64 {
-        Self::y(reasons + line) + 9.0
+    fn robot_y(&self, line: usize) -> f64 {
+        self.y(self.reason.len() + line) + 9.0
     }
 
     fn bottom(&self) -> f64 {
-        Self::robot_y(self.reason.len(), self.robot.len()) - 8.0
+        self.robot_y(self.robot.len()) - 8.0
     }
 
     fn draw(&self, svg: &mut Svg) {
-        svg.rect((20.0, 46.0), (self.pill, 24.0), &format!("rx=\"12\" fill=\"{}\"", self.color));
+        let quiet = format!("font-size=\"14\" fill=\"{}\"", palette::QUIET);
+        let ink = format!("font-size=\"15\" fill=\"{}\"", palette::INK);
+        for (line, text) in self.asked.iter().enumerate() {
+            svg.text((20.0, line_y(line)), text, &format!("font-size=\"14\" fill=\"{}\"", palette::INK));
+        }
+        svg.rect((20.0, self.y(0) - 17.0), (self.pill, 24.0), &format!("rx=\"12\" fill=\"{}\"", self.color));
         svg.text(
-            (20.0 + self.pill / 2.0, 63.0),
+            (20.0 + self.pill / 2.0, self.y(0)),
             &self.verdict,
             "font-size=\"15\" text-anchor=\"middle\" fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"0.6\"",
         );
         for (line, text) in self.reason.iter().enumerate() {
-            let style = format!("font-size=\"15\" fill=\"{}\"", palette::INK);
-            svg.text((32.0 + self.pill, Self::y(line)), text, &style);
+            svg.text((32.0 + self.pill, self.y(line)), text, &ink);
         }
         for (line, text) in self.robot.iter().enumerate() {
-            svg.text(
-                (20.0, Self::robot_y(self.reason.len(), line)),
-                text,
-                &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET),
-            );
+            svg.text((20.0, self.robot_y(line)), text, &quiet);
         }
     }
 }
@@ -364,14 +405,30 @@ mod tests {
     use super::*;
     use crate::fixture::{hall, walk};
 
+    const A_RUN: Heading<'static> = Heading { title: "a run", asked: "" };
+
+    #[test]
+    fn what_was_asked_for_stands_above_the_verdict() {
+        let run = walk(1);
+        let report = crate::fixture::report(&run, "9 of 9 setup clauses");
+        let asked = "Task: bring the mail to the desk. Scenario: somebody comes towards the robot in a corridor.";
+        let told = Told::of(&report, asked, 300.0, 300.0);
+        let bare = Told::of(&report, "", 300.0, 300.0);
+        assert_eq!((told.asked.join(""), bare.asked.len()), (asked.to_owned(), 0));
+        assert!(told.asked.len() > 1 && told.y(0) > line_y(told.asked.len() - 1) + 20.0, "the verdict is below it");
+        assert!(told.bottom() > bare.bottom());
+        let drawn = |asked| run_picture(&hall("hall"), &run, None, Some(&report), Heading { title: "a run", asked });
+        assert!(drawn(asked).contains(">Task: bring the mail") && !drawn("").contains("Task"));
+    }
+
     #[test]
     fn a_long_reason_goes_on_in_lines_and_the_map_moves_down() {
         let run = walk(1);
-        let short = Told::of(&crate::fixture::report(&run, "9 of 9 setup clauses"), 900.0, 900.0);
-        assert_eq!((short.reason.len(), Told::robot_y(1, 0)), (1, 90.0));
+        let short = Told::of(&crate::fixture::report(&run, "9 of 9 setup clauses"), "", 900.0, 900.0);
+        assert_eq!((short.reason.len(), short.robot_y(0)), (1, 90.0));
         let why = "9 of 10 setup clauses · encounter gap 0.0 s · c6: trigger at 6.6 s (when the robot says EXCUSE_ME), \
                    but human_1 never gives way to the robot";
-        let long = Told::of(&crate::fixture::report(&run, why), 700.0, 700.0);
+        let long = Told::of(&crate::fixture::report(&run, why), "", 700.0, 700.0);
         assert!(long.reason.len() > 1 && long.bottom() > short.bottom(), "{:?}", long.reason);
         let words = |text: &str| text.split([' ', '·']).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
         assert_eq!(words(&long.reason.join(" ")), words(why), "nothing of the cause is cut");
@@ -405,7 +462,7 @@ mod tests {
                 }
             })
             .collect();
-        let svg = run_picture(&hall("hall"), &run, None, None, "a run");
+        let svg = run_picture(&hall("hall"), &run, None, None, A_RUN);
         let written = written(&svg);
         let marks = svg.lines().filter(|line| line.contains("class=\"encounter\""));
         for (n, path) in (1..=3_u32).zip(marks) {
@@ -440,7 +497,7 @@ mod tests {
 
     #[test]
     fn the_robot_is_a_square_and_people_are_discs() {
-        let svg = run_picture(&hall("hall"), &walk(2), None, None, "a run");
+        let svg = run_picture(&hall("hall"), &walk(2), None, None, A_RUN);
         // One end of the robot on the map and its sign in the legend; two people have both as well.
         assert_eq!(svg.matches("<rect x=\"-").count(), 2, "{svg}");
         assert_eq!(svg.matches("<circle r=").count(), 4);
@@ -448,7 +505,7 @@ mod tests {
 
     #[test]
     fn a_picture_without_a_verdict_has_no_empty_band() {
-        let svg = run_picture(&hall("hall"), &walk(1), None, None, "a run");
+        let svg = run_picture(&hall("hall"), &walk(1), None, None, A_RUN);
         // The floor is the first thing that has the edges of cells.
         let floor = svg.lines().find(|line| line.contains("crispEdges")).unwrap();
         let top: f64 = floor.split_once(" y=\"").unwrap().1.split('"').next().unwrap().parse().unwrap();

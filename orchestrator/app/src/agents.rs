@@ -111,7 +111,8 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
         let title = format!("{name} · {} · {}", profile.name(), location.name);
         let bytes = files::bytes(&path, u64::MAX, "it was just written")?;
         let recording = socrates_stream::mcap::read(&bytes).map_err(|why| Complaint::input(why.to_string(), ""))?;
-        let svg = socrates_draw::run_picture(location, &recording, None, None, &title);
+        let heading = socrates_draw::Heading { title: &title, asked: "" };
+        let svg = socrates_draw::run_picture(location, &recording, None, None, heading);
         let png = socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| Complaint::input(why.to_string(), ""))?;
         files::write(&dir.join("run.svg"), svg.as_bytes())?;
         look = dir.join("run.png");

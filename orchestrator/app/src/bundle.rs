@@ -197,6 +197,15 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>)
     Ok(bundle)
 }
 
+/// What a request asks for, as it stands over the picture.
+fn asked(request: &Request) -> String {
+    let task = format!("Task: {}", request.task.trim());
+    match &request.rough_scenario {
+        Some(scenario) => format!("{task} Scenario: {}", scenario.trim()),
+        None => task,
+    }
+}
+
 /// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
 fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
     let Made { reading, proposal, paths, behaviors, runs, failed } = collect::made(prepared, past)?;
@@ -204,7 +213,8 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
     let verdict = report.verdict;
     let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
     let title = format!("{} · {}", proposal.title, prepared.location.name);
-    let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), &title);
+    let heading = socrates_draw::Heading { title: &title, asked: &asked(&prepared.request) };
+    let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), heading);
     out.put(&layout::DRAWING, &"", svg.as_bytes())?;
     let paint = move || socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()));
     // Painting takes as long as everything else of a bundle, so it goes on beside it where a core is free.

@@ -54,7 +54,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
                 let mut tail = vec![*entry, meet, exit];
                 let short = (exit, vec![meet, exit], taken.end_cost(&tail) + SHORT_TAIL);
                 extend(net, &mut tail, meet, &|node| route.nodes.contains(&node) && node != exit);
-                onward(&mut tail, taken);
+                onward(&mut tail, taken, Taken::can_end);
                 let cost = taken.end_cost(&tail);
                 [(exit, tail.split_off(1), cost), short]
             })

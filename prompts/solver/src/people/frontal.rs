@@ -2,13 +2,16 @@
 
 use socrates_model::{HumanProposal, PlaceClass};
 
-use super::{HURRY_MPS, ONWARD_M, ROBOT_MPS, Taken, Way, before_m, ideal_m, onward, onward_m};
+use super::{ENDS_APART_M, HURRY_MPS, ONWARD_M, ROBOT_MPS, Taken, Way, before_m, ideal_m, onward, onward_m};
 use crate::graph::Net;
 use crate::inside;
 use crate::robot_way::Route;
 
 /// What is farther away than a hurry and so much more is too far, m.
 const LATE_M: f64 = 2.0;
+
+/// Cost of setting out where the robot goes to, m of wished length.
+const AT_ITS_GOAL: f64 = 6.0;
 
 /// Towards the robot: its own way the other way round, from beyond the meeting node.
 pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
@@ -19,7 +22,8 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
         indoors(net, class, &mut back, &taken.goals);
     } else {
         let far = |n: &usize| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M;
-        let new = |n: &usize| n.checked_sub(1).and_then(|n| back.get(n)).is_some_and(|node| taken.can_end(*node));
+        let end = |n: &usize| n.checked_sub(1).and_then(|n| back.get(n)).copied();
+        let new = |n: &usize| end(n).is_some_and(|node| taken.can_end_past_robot(node));
         let long = (1..=back.len()).find(|n| far(n) && new(n)).or_else(|| (1..=back.len()).find(far));
         back.truncate(long.unwrap_or(back.len()));
     }
@@ -46,12 +50,14 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
             beyond_door.push(ahead);
         }
     }
+    let at_its_goal = |start: &usize| (net.at(*start) - net.at(last)).norm() < ENDS_APART_M;
     let cost = |ahead: &Vec<usize>| {
         let length = onward_m(net, meet, ahead);
         let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
         // Who could not be in time even in a hurry would have to start in the middle of its way.
         let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
-        (length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late
+        let mirrored = if ahead.last().is_some_and(at_its_goal) { AT_ITS_GOAL } else { 0.0 };
+        (length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late + mirrored
     };
     let free = |ahead: &Vec<usize>| ahead.last().is_some_and(|start| taken.free(*start));
     let pick = |starts: Vec<Vec<usize>>| {
@@ -68,7 +74,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     nodes.extend(back);
     let mut cost = best.0 * 0.2;
     if human.goal.is_none() {
-        onward(&mut nodes, taken);
+        onward(&mut nodes, taken, Taken::can_end_past_robot);
         cost += taken.end_cost(&nodes);
     }
     Some(Way { nodes, meet, cost })

@@ -67,7 +67,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     let exit = exits.into_iter().max_by(|a, b| rank(a).total_cmp(&rank(b)));
     nodes.extend(exit);
     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
-    onward(&mut nodes, taken);
+    onward(&mut nodes, taken, Taken::can_end);
     let length = tree.length_m(start);
     // Nobody waits behind the door until a robot comes that is still far away; of many scenarios some are so.
     let waits_s = before_m(net, route) / ROBOT_MPS - length / human.speed_mps.unwrap_or(HUMAN_MPS);

@@ -104,6 +104,13 @@ impl Taken<'_> {
             && self.goals.iter().all(|other| (self.net.at(*other) - at).norm() >= ENDS_APART_M)
     }
 
+    /// Whether somebody who comes towards the robot may end there: not where it set out either, or their way is its own read
+    /// backwards.
+    fn can_end_past_robot(&self, node: usize) -> bool {
+        let away = |robot: &usize| (self.net.at(*robot) - self.net.at(node)).norm() >= ENDS_APART_M;
+        self.can_end(node) && self.starts.first().is_none_or(away)
+    }
+
     /// What it costs to end a way there.
     fn end_cost(&self, nodes: &[usize]) -> f64 {
         if nodes.last().is_some_and(|last| self.can_end(*last)) { 0.0 } else { BAD_END }
@@ -142,8 +149,8 @@ fn ideal_m(human: &HumanProposal, net: &Net<'_>, route: &Route) -> f64 {
     before_m(net, route) / ROBOT_MPS * human.speed_mps.unwrap_or(HUMAN_MPS)
 }
 
-/// Lengthens a way that ends where somebody else's does, straight on, to the next node where nobody ends.
-fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
+/// Lengthens a way that ends where it may not, straight on, to the next node where it may.
+fn onward<'a>(nodes: &mut Vec<usize>, taken: &Taken<'a>, may_end: impl Fn(&Taken<'a>, usize) -> bool) {
     let net = taken.net;
     for _ in 0..4 {
         let (Some(last), Some(previous)) =
@@ -151,12 +158,12 @@ fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
         else {
             return;
         };
-        if taken.can_end(last) {
+        if may_end(taken, last) {
             return;
         }
         let next = net.near(last).iter().map(|(node, _)| *node);
         let next = next.filter(|node| !nodes.contains(node) && !net.inside(*node));
-        let turn = |node: usize| net.straight(previous, last, node) - if taken.can_end(node) { 0.0 } else { 0.5 };
+        let turn = |node: usize| net.straight(previous, last, node) - if may_end(taken, node) { 0.0 } else { 0.5 };
         let Some(next) = next.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else { return };
         nodes.push(next);
     }
@@ -164,7 +171,7 @@ fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
 
 /// Whoever the robot follows goes on past the robot's goal, so that both get to where they go.
 pub(crate) fn led_past(mut way: Way, taken: &Taken<'_>) -> Way {
-    onward(&mut way.nodes, taken);
+    onward(&mut way.nodes, taken, Taken::can_end);
     way.cost += taken.end_cost(&way.nodes);
     way
 }
