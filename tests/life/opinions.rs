@@ -177,11 +177,10 @@ fn judges_who_agree_to_all_or_answer_nothing_do_not_count() {
     assert!(yes["not_judged"][0]["why"].as_str().unwrap().contains("planted fact"), "{yes}");
     assert!(!text(at, "out/second_opinion.csv").contains(",yes,no\n"), "no run counts");
     let (code, err, chat) = said(Eye::Chats);
-    assert_eq!(
-        (code, &chat["facts"]["no_answer"], &chat["facts"]["not_shown"]),
-        (0, &json!(4), &json!(0)),
-        "{err} {chat}"
-    );
+    assert_eq!((code, &chat["judged"]), (0, &json!(0)), "{err} {chat}");
+    assert_eq!(chat["not_judged"][1]["why"], "no answer could be read", "{chat}");
+    let table = text(at, "out/second_opinion.csv");
+    assert!(table.matches(",no_answer,0,1,").count() == 8 && !table.contains(",not_shown,"), "{table}");
     // Three answers each, and all of them are paid for.
     let cost = socrates(at, "cost", &["--format", "json", "cost", "out"]).json();
     assert_eq!(cost["total"][0]["calls"], json!(6), "{cost}");
@@ -202,7 +201,8 @@ fn what_cannot_be_a_second_opinion_is_refused_before_anybody_is_asked() {
     };
     refused(&[], "it is off unless a model is named");
     refused(&["--model", "offline"], "`offline` sees no pictures");
-    refused(&["--model", "vllm:eye", "--stills", "4"], "`--stills` is `4`");
+    let few = socrates(at, "few", &["labels", "opinion", "bundle-busy", "--model", "vllm:eye", "--stills", "4"]);
+    assert!(few.code == 2 && few.err.contains("`--stills` is `4`"), "{}", few.err);
     refused(&["--model", "vllm:eye", "--repeats", "0"], "`--repeats` is `0`");
     // A run that a model of the same family wrote.
     let path = at.join("bundle-quiet/details/provenance.json");

@@ -307,12 +307,18 @@ fn question(request: &Request, recording: &Recording, facts: &[Asked], planted: 
 }
 
 impl Made {
-    /// Takes what was said of a run. A judge who finds what was planted has not looked: the run does not count.
+    /// Takes what was said of a run. A judge who finds what was planted has not looked, and one who says nothing has not judged: the run
+    /// does not count.
     fn take(&mut self, name: &str, asked: &About, repeats: &[Repeat]) {
         let mut rows = asked.rows(name, repeats, true);
-        let fooled = rows.iter().find(|row| row.planted && row.held.shown() == Some(true)).map(|row| row.words.clone());
-        if let Some(words) = fooled {
-            self.not_judged.push((name.to_owned(), format!("`shown` is said of a planted fact: \"{words}\"")));
+        let fooled = rows.iter().find(|row| row.planted && row.held.shown() == Some(true));
+        let why = match fooled {
+            Some(row) => Some(format!("`shown` is said of a planted fact: \"{}\"", row.words)),
+            None if rows.iter().all(|row| row.held == Held::NoAnswer) => Some("no answer could be read".to_owned()),
+            None => None,
+        };
+        if let Some(why) = why {
+            self.not_judged.push((name.to_owned(), why));
             rows.iter_mut().for_each(|row| row.judged = false);
         }
         self.rows.extend(rows);

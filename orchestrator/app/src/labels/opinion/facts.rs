@@ -126,7 +126,7 @@ mod tests {
             json!([
                 {"id": "f1", "quote": "A nurse", "kind": {"humans": 1}},
                 {"id": "f2", "quote": "A nurse waits", "kind": {"relates": {"human": "human_1", "relation": "static"}}},
-                {"id": "f3", "quote": "She says stop", "kind": {"gestures": {"human": "human_1", "gesture": "STOP"}}},
+                {"id": "f3", "quote": "She says stop", "kind": {"gestures": {"human": "human_1", "gesture": "PROCEED"}}},
                 {"id": "f4", "quote": "Go on", "kind": {"robot_task": "Go on"}},
             ]),
             json!([

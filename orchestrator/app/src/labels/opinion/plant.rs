@@ -224,8 +224,8 @@ mod tests {
         let agent = AgentId::from_number(1);
         let said = recording(1.0, &[EventKind::Gesture { agent, gesture: Some(Gesture::Wait), to: None }]);
         let gesture = |word: &str| json!({"gestures": {"human": "human_1", "gesture": word}});
-        assert!(!lacks(&said, "frontal", gesture("WAIT")) && lacks(&said, "frontal", gesture("STOP")));
-        assert!(lacks(&said, "static", reacts("look_at_robot", Some("STOP"))));
+        assert!(!lacks(&said, "frontal", gesture("WAIT")) && lacks(&said, "frontal", gesture("PROCEED")));
+        assert!(lacks(&said, "static", reacts("look_at_robot", Some("PROCEED"))));
         assert!(!lacks(&said, "static", reacts("look_at_robot", Some("WAIT"))));
     }
 
