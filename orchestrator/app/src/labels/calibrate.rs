@@ -231,7 +231,7 @@ impl Calibration {
                 let Interval { estimate, low, high } = found.share;
                 talk.line(&format!(
                     "share      {:.1} % of the facts of {} that nobody labeled hold ({:.1} to {:.1} %; the judge says {:.1} %, \
-                     uncorrected bound {:.1} %)",
+                     unclipped {:.1} %)",
                     estimate * 100.0,
                     plural(self.free_runs, "run"),
                     low * 100.0,
