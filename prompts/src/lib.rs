@@ -26,6 +26,7 @@ pub mod account;
 pub mod answer;
 pub mod building;
 pub mod json;
+pub mod opinion;
 pub mod schema;
 
 mod behaviors;

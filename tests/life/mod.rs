@@ -26,6 +26,7 @@ mod maps;
 mod no_ways;
 pub(crate) mod observers;
 mod observing;
+mod opinions;
 mod originals;
 mod pages;
 mod readme;

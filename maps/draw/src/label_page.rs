@@ -86,7 +86,7 @@ impl Asks {
         }
     }
 
-    /// The columns of the table that the page saves.
+    /// The columns of the table that the page saves, without the comment that stands behind them.
     #[must_use]
     pub fn columns(self) -> Vec<&'static str> {
         let sentence = (self == Self::AsAsked).then_some("sentence");
@@ -203,8 +203,10 @@ impl LabelPage {
         }
         let questions: Vec<Value> = self.asks.questions().iter().map(Question::told).collect();
         let key = Digest::of(Value::Array(self.runs.clone()).to_string().as_bytes()).short();
+        // Words for people: kept in the table, and read by no figure.
+        let columns: Vec<&str> = self.asks.columns().into_iter().chain(["comment"]).collect();
         let data = json!({
-            "runs": runs, "places": places, "key": key, "questions": questions, "columns": self.asks.columns(), "named": blind,
+            "runs": runs, "places": places, "key": key, "questions": questions, "columns": columns, "named": blind,
         });
         let keys = self.asks.questions().first().map_or(&YES_NO, |question| &question.answers);
         let keys: Vec<String> = keys.iter().map(|(_, key)| format!("<kbd>{}</kbd>", escape(key))).collect();
@@ -256,9 +258,12 @@ mod tests {
 
     #[test]
     fn the_tables_have_the_columns_that_are_read_back() {
-        assert_eq!(data(&page("a"))["columns"], json!(["run", "rater", "simulable", "appropriate", "as_asked"]));
+        assert_eq!(
+            data(&page("a"))["columns"],
+            json!(["run", "rater", "simulable", "appropriate", "as_asked", "comment"])
+        );
         let blind = data(&filled(Asks::AsAsked, "a").html("a"));
-        assert_eq!(blind["columns"], json!(["run", "rater", "as_asked", "sentence"]));
+        assert_eq!(blind["columns"], json!(["run", "rater", "as_asked", "sentence", "comment"]));
         let answers = json!([["as_asked", "y"], ["partly", "h"], ["not", "n"]]);
         assert_eq!(blind["questions"][0]["answers"], answers);
     }

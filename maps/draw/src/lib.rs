@@ -58,5 +58,5 @@ pub use page::{Page, ProvenanceRow, StageRow};
 pub use pdf::{PdfError, pdf_from_svg};
 pub use png::{PngError, png_at_dpi, png_from_svg};
 pub use run::{Heading, run_picture};
-pub use stills::contact_sheet;
+pub use stills::{Signs, contact_sheet, letter};
 pub use track_page::{FigureRow, TrackPage};

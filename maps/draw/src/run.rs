@@ -200,7 +200,8 @@ impl Told {
         let verdict = report.verdict.name().replace('_', " ");
         let pill = text_width(&verdict, 15.0) + 22.0;
         let room = |y: f64| if y > LOCATOR_PX.1 + 10.0 + LINE_PX { below } else { beside };
-        let asked = wrapped_beside(asked, |line| room(line_y(line)), 14.0, ASKED_LINES);
+        let mut asked = wrapped_beside(asked, |line| room(line_y(line)), 14.0, ASKED_LINES);
+        asked.retain(|line| !line.is_empty());
         let mut told = Self {
             asked,
             color: if good { palette::GOOD } else { palette::BAD },
@@ -414,7 +415,8 @@ mod tests {
         let asked = "Task: bring the mail to the desk. Scenario: somebody comes towards the robot in a corridor.";
         let told = Told::of(&report, asked, 300.0, 300.0);
         let bare = Told::of(&report, "", 300.0, 300.0);
-        assert_eq!((told.asked.join(""), bare.asked.len()), (asked.to_owned(), 0));
+        let words = |lines: &[String]| lines.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ");
+        assert_eq!((words(&told.asked), bare.asked.len()), (asked.to_owned(), 0));
         assert!(told.asked.len() > 1 && told.y(0) > line_y(told.asked.len() - 1) + 20.0, "the verdict is below it");
         assert!(told.bottom() > bare.bottom());
         let drawn = |asked| run_picture(&hall("hall"), &run, None, Some(&report), Heading { title: "a run", asked });

@@ -27,11 +27,20 @@ const PACE_SECS: f64 = 0.3;
 /// Below this somebody stands, m/s.
 const STANDS_MPS: f64 = 0.15;
 
+/// What stands on bodies, and how pictures are told apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signs {
+    /// `R` for the robot, a person's number; pictures have their times.
+    Numbers,
+    /// `R` for the robot, a letter for a person, see [`letter`]; pictures are numbered from 0, the one of all ways.
+    Letters,
+}
+
 /// The sheet of a run as SVG: the ways of the whole run, then so many stills in order of time. It is headed by this name alone.
 #[must_use]
-pub fn contact_sheet(name: &str, location: &Location, recording: &Recording, stills: usize) -> String {
+pub fn contact_sheet(name: &str, location: &Location, recording: &Recording, stills: usize, signs: Signs) -> String {
     let stills = stills.clamp(*STILLS.start(), *STILLS.end());
-    let scene = Scene { location, recording, there: There::of(recording) };
+    let scene = Scene { location, recording, there: There::of(recording), signs };
     let (from_s, to_s) = scene.span_s();
     #[expect(clippy::cast_precision_loss, reason = "a few stills")]
     let time = |index: usize| from_s + (to_s - from_s) * index as f64 / (stills - 1) as f64;
@@ -41,7 +50,7 @@ pub fn contact_sheet(name: &str, location: &Location, recording: &Recording, sti
     let (w, h) = plan.size();
     let mut svg = Svg::new(w, h);
     svg.rect((0.0, 0.0), (w, h), "fill=\"#ffffff\"");
-    head.draw(&mut svg, name);
+    head.draw(&mut svg, &scene, name);
     for (index, cell) in plan.cells.iter().enumerate() {
         cell::draw(&mut svg, &scene, &times, index, cell);
     }
@@ -54,9 +63,19 @@ struct Scene<'a> {
     location: &'a Location,
     recording: &'a Recording,
     there: There,
+    signs: Signs,
 }
 
 impl Scene<'_> {
+    /// What stands on somebody's body.
+    fn sign(&self, agent: AgentId) -> String {
+        match self.signs {
+            Signs::Letters => letter(agent),
+            Signs::Numbers if agent.number() == 0 => "R".to_owned(),
+            Signs::Numbers => agent.number().to_string(),
+        }
+    }
+
     /// Time of the last tick, s.
     fn end_s(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "a run has fewer than 2^53 ticks")]
@@ -133,7 +152,7 @@ impl Scene<'_> {
                 let at = event.time.secs();
                 match &event.kind {
                     EventKind::Gesture { agent, gesture: Some(gesture), .. } => {
-                        Some(format!("{} says {} at {at:.1} s", short(*agent), gesture.name().replace('_', " ")))
+                        Some(format!("{} says {} at {at:.1} s", self.sign(*agent), gesture.name().replace('_', " ")))
                     }
                     EventKind::Door { open, .. } => {
                         Some(format!("a door {} at {at:.1} s", if *open { "opens" } else { "closes" }))
@@ -164,12 +183,17 @@ impl Scene<'_> {
     }
 }
 
-/// What stands on somebody's body: `R` for the robot, a person's number.
-fn short(agent: AgentId) -> String {
-    match agent.number() {
-        0 => "R".to_owned(),
-        number => number.to_string(),
-    }
+/// Letters of people; the robot has `R`.
+const LETTERS: &[u8; 25] = b"ABCDEFGHIJKLMNOPQSTUVWXYZ";
+
+/// What stands on somebody's body on a sheet with letters: `R` for the robot, `A` to `Z` without `R` for the first 25 people, then
+/// `A2` to `Z2`, and so on.
+#[must_use]
+pub fn letter(agent: AgentId) -> String {
+    let Some(index) = agent.number().checked_sub(1) else { return "R".to_owned() };
+    let (round, place) = (index / 25, index % 25);
+    let letter = usize::try_from(place).ok().and_then(|place| LETTERS.get(place)).copied().map_or('?', char::from);
+    if round == 0 { letter.to_string() } else { format!("{letter}{}", round + 1) }
 }
 
 /// The color of a body: dark enough for the white number on it.
@@ -193,16 +217,15 @@ fn body(robot: bool, r: f64, color: &str) -> String {
     )
 }
 
-/// [`body`] at a place, turned, with its number.
-fn draw_body(svg: &mut Svg, at: (f64, f64), yaw: f64, agent: AgentId, r: f64) {
+/// [`body`] at a place, turned, with its sign.
+fn draw_body(svg: &mut Svg, at: (f64, f64), yaw: f64, agent: AgentId, words: &str, r: f64) {
     let degrees = -yaw.to_degrees();
     let body = body(agent.number() == 0, r, color(agent));
     svg.raw(&format!("<g transform=\"translate({:.1} {:.1}) rotate({degrees:.1})\">{body}</g>", at.0, at.1));
-    let words = short(agent);
     let size = if words.len() > 1 { r * 1.15 } else { r * 1.45 };
     svg.text(
         (at.0, at.1 + size * 0.36),
-        &words,
+        words,
         &format!(
             "font-size=\"{size:.1}\" text-anchor=\"middle\" fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"0.6\""
         ),
@@ -217,7 +240,7 @@ mod tests {
     use crate::fixture::{away, hall, human, recording, robot, walk};
 
     fn sheet(run: &Recording) -> String {
-        contact_sheet("r07", &hall("hall"), run, 8)
+        contact_sheet("r07", &hall("hall"), run, 8, Signs::Numbers)
     }
 
     #[test]
@@ -249,7 +272,9 @@ mod tests {
                 .collect();
             recording(&ticks.iter().map(Vec::as_slice).collect::<Vec<_>>())
         };
-        let span = |run: &Recording| Scene { location: &hall("hall"), recording: run, there: There::of(run) }.span_s();
+        let span = |run: &Recording| {
+            Scene { location: &hall("hall"), recording: run, there: There::of(run), signs: Signs::Numbers }.span_s()
+        };
         assert_eq!(span(&run(20.0)), (0.0, 10.0));
         let (from, to) = span(&run(12.0));
         assert!((from - 4.0).abs() < 0.11 && (to - 10.0).abs() < 1e-9, "{from} {to}");
@@ -268,6 +293,19 @@ mod tests {
         let svg = sheet(&run);
         assert!(svg.contains("walk: R · stand: 1"), "{svg}");
         assert_eq!(svg.matches("1 says WAIT at 1.3 s").count(), 1, "under the still after it alone");
+    }
+
+    #[test]
+    fn a_sheet_with_letters_numbers_its_pictures_and_shows_no_number_of_a_person() {
+        let run = walk(2);
+        let svg = contact_sheet("a run", &hall("hall"), &run, 8, Signs::Letters);
+        for words in ["walk: R A B", ">picture 0: all ways, 0 to 6.0 s<", ">picture 1 · 0.0 s<", ">picture 8 · 6.0 s<"]
+        {
+            assert!(svg.contains(words), "{words}: {svg}");
+        }
+        assert!(!svg.contains(">1<") && !svg.contains(">2<"));
+        let names: Vec<String> = [0, 1, 17, 18, 25, 26, 51].map(|number| letter(AgentId::from_number(number))).to_vec();
+        assert_eq!(names, ["R", "A", "Q", "S", "Z", "A2", "A3"]);
     }
 
     #[test]

@@ -12,6 +12,7 @@ use socrates_orchestrator::{pipeline, price_of};
 use crate::bundle;
 use crate::config::Config;
 use crate::exit::Complaint;
+use crate::ledger;
 use crate::output::Printer;
 use crate::prices::{Price, dollars, read_prices};
 
@@ -50,16 +51,21 @@ impl Sum {
     }
 }
 
-/// Adds up the exchanges of bundles, or of folders that hold bundles.
+/// Adds up the exchanges of bundles, of folders that hold bundles, and of folders of what was asked beside them.
 pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&Path>) -> Result<(), Complaint> {
     let named = config.text("author.prices");
     let file = prices.map(Path::to_path_buf).or_else(|| (!named.is_empty()).then(|| PathBuf::from(named)));
     let prices = file.as_deref().map_or_else(|| Ok(BTreeMap::new()), read_prices)?;
-    let bundles = bundles_in(what)?;
+    let (ledgers, what): (Vec<PathBuf>, Vec<PathBuf>) =
+        what.iter().cloned().partition(|path| ledger::in_folder(path).is_some());
+    let bundles = bundles_in(&what)?;
     let mut total: BTreeMap<String, Sum> = BTreeMap::new();
     let mut rows = Vec::new();
-    for bundle in &bundles {
-        let models = exchanges(bundle)?;
+    for bundle in ledgers.iter().chain(&bundles) {
+        let models = match ledger::in_folder(bundle) {
+            Some(file) => sums(&ledger::read(&file)?),
+            None => exchanges(bundle)?,
+        };
         for (model, sum) in &models {
             total.entry(model.clone()).or_default().add(sum);
         }
@@ -86,6 +92,9 @@ pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&P
     for (model, sum) in total.iter().filter(|(_, sum)| sum.unanswered > 0) {
         let calls = crate::words::plural(usize::try_from(sum.unanswered).unwrap_or(usize::MAX), "call");
         talk.line(&format!("{calls} of {model} got no answer; what they cost is not known and not in the sum"));
+    }
+    if !ledgers.is_empty() {
+        talk.line(&format!("{} of what was asked beside bundles", crate::words::plural(ledgers.len(), "folder")));
     }
     talk.line(&format!("{} bundles; `~` marks figures that hold estimates (bytes / 4)", bundles.len()));
     if total.keys().any(|model| money(model, &Sum::default(), &prices).is_none()) {
@@ -150,6 +159,11 @@ fn exchanges(dir: &Path) -> Result<BTreeMap<String, Sum>, Complaint> {
     let provenance: Value = serde_json::from_slice(&bundle::file(dir, name)?)
         .map_err(|why| Complaint::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
     Ok(sums(&provenance))
+}
+
+/// The models that were asked for a bundle, or rules, by their names.
+pub(crate) fn models(dir: &Path) -> Result<Vec<String>, Complaint> {
+    Ok(exchanges(dir)?.into_keys().collect())
 }
 
 fn sums(provenance: &Value) -> BTreeMap<String, Sum> {

@@ -3,16 +3,19 @@
 //! ```text
 //! bundles ─┬─► page                                         ─► a table of answers ─► `dev agreement`
 //!          ├─► blind: page, stills, texts, protocol, key.csv ─► tables of answers ─► compare
-//!          └─► observe: page with sliders, beliefs, pairs; key  ─► tables of answers ─► observed
+//!          ├─► observe: page with sliders, beliefs, pairs; key  ─► tables of answers ─► observed
+//!          └─► opinion: a vision model is asked, table of facts ─► with tables of blind judges ─► calibrate
 //! ```
 
 mod answers;
 mod blind;
+mod calibrate;
 mod compare;
 mod door;
 mod key;
 mod observe;
 mod observed;
+mod opinion;
 mod task;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,9 +29,11 @@ use socrates_model::request::RobotGesture;
 use socrates_model::{Recording, Request, ScenarioId, Verdict};
 
 pub use self::blind::Blind;
+pub use self::calibrate::{CalibrateOptions, calibrate};
 pub use self::compare::{CompareOptions, compare};
 pub use self::observe::{ObserveOptions, observe};
 pub use self::observed::{ObservedOptions, observed};
+pub use self::opinion::{OpinionOptions, opinion};
 use crate::batch;
 use crate::bundle;
 use crate::exit::Complaint;

@@ -67,6 +67,7 @@ mod kept;
 pub mod keys;
 pub mod labels;
 pub mod layout;
+mod ledger;
 pub mod library_coverage;
 pub mod library_diversity;
 mod library_index;

@@ -54,6 +54,8 @@ pub struct ClientConfig {
     pub proxy: bool,
     /// Whether plain HTTP may go to other machines. Default false.
     pub plain_http: bool,
+    /// Whether a question whose picture is refused ends there. Default false: it is asked without.
+    pub needs_pictures: bool,
 }
 
 impl ClientConfig {
@@ -76,6 +78,7 @@ impl ClientConfig {
             old_token_limit: !base_url.contains("api.openai.com"),
             proxy: false,
             plain_http: false,
+            needs_pictures: false,
         }
     }
 }
@@ -143,7 +146,8 @@ impl ChatClient {
             return Err(ChatError::Setup { why: "there is no way to ask".to_owned() });
         };
         let has_picture = request.turns.iter().any(|turn| turn.png.is_some());
-        let mut way = Way { rung, stream: self.config.stream && known.streams, picture: has_picture && known.pictures };
+        let picture = has_picture && (known.pictures || self.config.needs_pictures);
+        let mut way = Way { rung, stream: self.config.stream && known.streams, picture };
         let mut steps = Vec::new();
         if has_picture && !way.picture {
             steps.push("asked without its picture, which the server refused before".to_owned());
@@ -219,7 +223,7 @@ impl ChatClient {
             })
         };
         let blind = || {
-            way.picture
+            (way.picture && !self.config.needs_pictures)
                 .then(|| (Way { picture: false, ..way }, "asked without its picture, which was refused".to_owned()))
         };
         match to {

@@ -30,6 +30,7 @@ mod account;
 pub mod attempt;
 pub mod building;
 pub mod job;
+pub mod pictured;
 pub mod settings;
 pub mod variants;
 

@@ -163,7 +163,7 @@ fn svg_size(svg: &str) -> Option<(f64, f64)> {
 }
 
 /// Turns of the same speaker in a row as one turn, its picture kept.
-fn merged(turns: Vec<Turn>) -> Vec<Turn> {
+pub(crate) fn merged(turns: Vec<Turn>) -> Vec<Turn> {
     let mut out: Vec<Turn> = Vec::new();
     for turn in turns {
         match out.last_mut() {

@@ -90,7 +90,7 @@ fn author_of(author: &AuthorSpec, keys: &Keys, style: Style) -> Result<Box<dyn A
 }
 
 /// The author that a setting names.
-fn read(setting: &str) -> Result<AuthorSpec, AskError> {
+pub(crate) fn read(setting: &str) -> Result<AuthorSpec, AskError> {
     setting.parse().map_err(|bad: BadId| AskError::new(FaultCode::JRequest, bad.to_string()))
 }
 
@@ -178,6 +178,13 @@ pub(crate) fn client(setting: &str, keys: &Keys) -> Result<ChatClient, AskError>
         return Err(AskError::new(FaultCode::JRequest, message));
     };
     ChatClient::new(config(dialect(*kind), model, keys)?).map_err(|error| ask_error(&error))
+}
+
+/// The client of a server for questions that mean nothing without their picture.
+pub(crate) fn seeing_client(kind: ServerKind, model: &str, keys: &Keys) -> Result<ChatClient, AskError> {
+    let mut config = config(dialect(kind), model, keys)?;
+    config.needs_pictures = true;
+    ChatClient::new(config).map_err(|error| ask_error(&error))
 }
 
 /// Looks whether the author of a setting can be asked: a key where one is needed, a folder of recordings that is there, a server

@@ -3,7 +3,7 @@
 use socrates_model::{AgentId, AgentState, Location, PlaceClass};
 
 use super::plan::Cell;
-use super::{STANDS_MPS, Scene, color, draw_body, short};
+use super::{STANDS_MPS, Scene, Signs, color, draw_body};
 use crate::actor::{self, Look, RING};
 use crate::camera::seen;
 use crate::label::{Area, Labels, text_width, wrapped};
@@ -37,7 +37,7 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, times: &[f64], index: usize
     let before_s = index.checked_sub(2).and_then(|before| times.get(before)).copied().unwrap_or(0.0);
     let now_s = index.checked_sub(1).and_then(|now| times.get(now)).copied();
     actor::draw_doors(svg, scene.location, &whole, scene.recording, now_s.unwrap_or(0.0));
-    draw_places(svg, scene.location, &whole, &part, &cell.area);
+    draw_places(svg, scene.location, &whole, &part, &cell.area, bodies(scene, now_s, cell, &whole));
     match now_s {
         Some(now_s) => draw_moment(svg, scene, (before_s, now_s), cell, &whole, &part),
         None => draw_ways(svg, scene, times, cell, &whole),
@@ -47,6 +47,11 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, times: &[f64], index: usize
     let (head, lines) = match now_s {
         Some(now_s) => told(scene, (before_s, now_s, index == 1), cell, &whole),
         None => told_of_all(scene, times),
+    };
+    let head = match (scene.signs, now_s) {
+        (Signs::Numbers, _) => head,
+        (Signs::Letters, None) => format!("picture {index}: {head}"),
+        (Signs::Letters, Some(_)) => format!("picture {index} · {head}"),
     };
     svg.heading((x + 2.0, y + h + 20.0), &head, TIME_PX, palette::INK);
     let mut top = y + h + 20.0;
@@ -59,8 +64,20 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, times: &[f64], index: usize
     }
 }
 
+/// Where bodies stand at a moment, or at the beginning and the end of the run.
+fn bodies(scene: &Scene<'_>, now_s: Option<f64>, cell: &Cell, whole: &Frame) -> Vec<Area> {
+    let times = now_s.map_or_else(|| vec![0.0, scene.end_s()], |now_s| vec![now_s]);
+    let states = times.into_iter().flat_map(|time| scene.states(time));
+    states
+        .map(|state| {
+            let ((x, y), r) = (whole.px(scene.location, &state.point()), radius_px(scene, cell, state.agent_id()));
+            Area { x: x - r, y: y - r, w: 2.0 * r, h: 2.0 * r }
+        })
+        .collect()
+}
+
 /// The names of places, once for neighbors of one name, where they hide nothing.
-fn draw_places(svg: &mut Svg, location: &Location, whole: &Frame, part: &Frame, area: &Area) {
+fn draw_places(svg: &mut Svg, location: &Location, whole: &Frame, part: &Frame, area: &Area, bodies: Vec<Area>) {
     const TOLD: [PlaceClass; 6] = [
         PlaceClass::Room,
         PlaceClass::Elevator,
@@ -71,6 +88,7 @@ fn draw_places(svg: &mut Svg, location: &Location, whole: &Frame, part: &Frame, 
     ];
     let mut labels = Labels::within(*area);
     labels.avoid(wall_areas(location, part));
+    labels.avoid(bodies);
     let mut named: Vec<(&str, (f64, f64))> = Vec::new();
     for node in location.graph.nodes() {
         let at = whole.px(location, &node.at);
@@ -130,8 +148,8 @@ fn draw_ways(svg: &mut Svg, scene: &Scene<'_>, times: &[f64], cell: &Cell, whole
         let (Some(first), Some(last)) = (track.first(), track.last()) else { continue };
         let at = whole.px(scene.location, &first.point());
         crate::marks::draw_start(svg, at, agent.number() == 0, r * 0.8, color(agent), 2.0);
-        svg.label((at.0, at.1 + r * 0.45), &short(agent), r * 1.25, color(agent));
-        draw_body(svg, whole.px(scene.location, &last.point()), last.yaw, agent, r);
+        svg.label((at.0, at.1 + r * 0.45), &scene.sign(agent), r * 1.25, color(agent));
+        draw_body(svg, whole.px(scene.location, &last.point()), last.yaw, agent, &scene.sign(agent), r);
     }
 }
 
@@ -157,7 +175,7 @@ fn draw_moment(
         if state.gesture().is_some() {
             svg.circle(at, r * RING, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
         }
-        draw_body(svg, at, state.yaw, state.agent_id(), r);
+        draw_body(svg, at, state.yaw, state.agent_id(), &scene.sign(state.agent_id()), r);
         taken.push((Area { x: at.0 - r, y: at.1 - r, w: 2.0 * r, h: 2.0 * r }, 1.0));
     }
     let look = Look::new(scene.recording, (cell.px_per_m, LEAST_PX), SAID_PX, false, cell.area);
@@ -190,8 +208,8 @@ fn draw_pace(svg: &mut Svg, scene: &Scene<'_>, state: &AgentState, now_s: f64, a
 }
 
 /// Numbers of people after a word; nothing where there are none.
-fn listed(word: &str, who: &[AgentId]) -> Option<String> {
-    let names = || who.iter().map(|agent| short(*agent)).collect::<Vec<_>>().join(" ");
+fn listed(scene: &Scene<'_>, word: &str, who: &[AgentId]) -> Option<String> {
+    let names = || who.iter().map(|agent| scene.sign(*agent)).collect::<Vec<_>>().join(" ");
     match who.len() {
         0 => None,
         1..=LISTED => Some(format!("{word}: {}", names())),
@@ -224,7 +242,7 @@ fn told(
     }
     let who: Vec<String> = [("walk", &walk), ("stand", &stand), ("not in the picture", &out)]
         .into_iter()
-        .filter_map(|(word, who)| listed(word, who))
+        .filter_map(|(word, who)| listed(scene, word, who))
         .collect();
     let after_s = if first { -1.0 } else { before_s };
     (format!("{now_s:.1} s"), [who.join(" · "), scene.happened(after_s, now_s).join(", ")])

@@ -23,7 +23,7 @@ const LISTED: usize = 40;
 /// The head of a sheet.
 #[derive(Debug)]
 pub(super) struct Head {
-    /// Lines of people with their places from the left, px.
+    /// Lines of people with their places from the left, px, and their roles.
     lines: Vec<Vec<(f64, AgentId, String)>>,
 }
 
@@ -52,12 +52,12 @@ impl Head {
         NAME_LINE + LINE * (lines + 1.0) + 8.0
     }
 
-    pub(super) fn draw(&self, svg: &mut Svg, name: &str) {
+    pub(super) fn draw(&self, svg: &mut Svg, scene: &Scene<'_>, name: &str) {
         svg.heading((MARGIN, 28.0), name, 26.0, palette::INK);
         let mut top = NAME_LINE + 18.0;
         for line in &self.lines {
             for (x, agent, role) in line {
-                draw_body(svg, (x + BODY, top - 5.0), 0.0, *agent, BODY);
+                draw_body(svg, (x + BODY, top - 5.0), 0.0, *agent, &scene.sign(*agent), BODY);
                 words(svg, (x + 2.0 * BODY + 14.0, top), role);
             }
             top += LINE;

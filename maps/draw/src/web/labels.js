@@ -2,7 +2,7 @@
   const { View, controls, word, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
-  const { has, clean, kept, shuffler, save } = raters;
+  const { has, clean, kept, shuffler, remark, row, plain, save } = raters;
   const COLUMNS = data.columns, QUESTIONS = data.questions;
   // An answer that something was not as asked comes with the words.
   const NAMES = COLUMNS.includes("sentence"), AGREES = "as_asked";
@@ -72,13 +72,17 @@
       field.rows = 3; field.id = "sentence"; field.value = of(run).sentence || ""; part.appendChild(field);
       field.addEventListener("input", () => { note(field.value); });
     }
-    if (!rater) word("p", "Write your name above first.", box, "bad");
+    if (rater) remark(box, of(run).comment || "", comment); else word("p", "Write your name above first.", box, "bad");
     progress();
+  }
+  function ours() {
+    const own = book.own(rater);
+    if (!has(own, run.name)) own[run.name] = {};
+    return own;
   }
   function set(id, answer) {
     if (!rater) return;
-    const own = book.own(rater);
-    if (!has(own, run.name)) own[run.name] = {};
+    const own = ours();
     if (answer) own[run.name][id] = answer; else delete own[run.name][id];
     if (!owes(run)) delete own[run.name].sentence;
     keep(); ask();
@@ -86,6 +90,10 @@
   // The words are written while they are typed; the field itself stays.
   function note(text) {
     mine()[run.name].sentence = text.replace(/\s+/g, " ").trim();
+    keep(); progress();
+  }
+  function comment(text) {
+    if (text) ours()[run.name].comment = plain(text); else delete ours()[run.name].comment;
     keep(); progress();
   }
   function progress() {
@@ -96,9 +104,8 @@
   }
   // Runs in the order of the page, never of the rater: tables of two raters can be laid side by side.
   function csv() {
-    const cell = (text) => (/[",\r\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
     const rows = data.runs.filter(whole).map((r) => COLUMNS.map((column) => ({ run: r.name, rater })[column] ?? of(r)[column] ?? ""));
-    return [COLUMNS, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
+    return [COLUMNS, ...rows].map(row).join("\n") + "\n";
   }
   function open() {
     for (let step = 1; step <= order.length; step++) {

@@ -2,14 +2,14 @@
   const { View, Clock, make, word, seconds, secs } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
-  const { clean, kept, shuffler, save } = raters;
+  const { clean, kept, shuffler, remark, row, plain, save } = raters;
   const KEY = "socrates-observers-" + data.key, HZ = 10;
   if (!data.tasks.length) { at("none").hidden = false; at("stage").hidden = true; return; }
 
   // Answers by rater, by task.
   const book = kept(KEY), mine = () => book.of(rater);
   let rater = book.rater;
-  let order = [], task = null, views = [], answer = null, ended = false;
+  let order = [], task = null, views = [], answer = null, ended = false, words = "";
 
   // Every rater has an order of their own, always the same: sliders, then beliefs, then pairs. Films that come again come in the
   // first half and at the end, with all others in between.
@@ -39,7 +39,7 @@
   function show() {
     task = order.find((t) => mine()[t.id] === undefined) || null;
     at("stage").hidden = !task; at("end").hidden = Boolean(task);
-    answer = null; ended = false; views = [];
+    answer = null; ended = false; views = []; words = "";
     // The clock stands at the end of the film before: without this the next one would count as seen.
     clock.end = 0; clock.set(0); clock.play(false);
     progress();
@@ -107,12 +107,15 @@
   // What was shut until the film had ended.
   function open() {
     for (const node of at("questions").querySelectorAll("input, button")) node.disabled = task.kind === "belief";
+    remark(at("questions"), words, (said) => { words = said; });
     ready();
   }
   const ready = () => { at("next").disabled = !(ended && answer !== null); };
   function next() {
     if (at("next").disabled || !rater) return;
     book.own(rater)[task.id] = answer;
+    // Under a name that no question has.
+    if (words) book.own(rater)[task.id + " comment"] = plain(words);
     book.keep(rater); show();
   }
   function progress() {
@@ -123,14 +126,15 @@
   }
   // One line for each answer; of a belief one for each tenth of a second.
   function csv() {
-    const rows = [["task", "rater", "t", "value"]];
+    const rows = [["task", "rater", "t", "value", "comment"]];
     for (const t of data.tasks) {
       const said = mine()[t.id];
       if (said === undefined) continue;
-      if (Array.isArray(said)) said.forEach((value, i) => rows.push([t.id, rater, (i / HZ).toFixed(1), value.toFixed(2)]));
-      else rows.push([t.id, rater, "", typeof said === "number" ? said.toFixed(2) : said]);
+      const noted = mine()[t.id + " comment"] || "";
+      if (Array.isArray(said)) said.forEach((value, i) => rows.push([t.id, rater, (i / HZ).toFixed(1), value.toFixed(2), i ? "" : noted]));
+      else rows.push([t.id, rater, "", typeof said === "number" ? said.toFixed(2) : said, noted]);
     }
-    return rows.map((row) => row.join(",")).join("\n") + "\n";
+    return rows.map(row).join("\n") + "\n";
   }
   globalThis.observed = csv;
 

@@ -27,6 +27,16 @@ const raters = (() => {
       return all;
     };
   }
+  // A field for a remark in free words; `heard` gets them while they are typed.
+  function remark(box, words, heard) {
+    const part = player.word("label", "comment, if you like ", box, "remark"), field = document.createElement("textarea");
+    field.rows = 2; field.maxLength = 500; field.value = words; part.appendChild(field);
+    field.addEventListener("input", () => heard(field.value.replace(/\s+/g, " ").trim()));
+  }
+  // Cells of a table; a program that computes with tables must not take words for a formula.
+  const cell = (text) => (/[",\r\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
+  const row = (cells) => cells.map((text) => cell(String(text))).join(",");
+  const plain = (text) => text.replace(/^[=+@-]+\s*/, "");
   function save(table, of, rater) {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([table], { type: "text/csv" }));
@@ -34,5 +44,5 @@ const raters = (() => {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
-  return { has, clean, kept, shuffler, save };
+  return { has, clean, kept, shuffler, remark, row, plain, save };
 })();

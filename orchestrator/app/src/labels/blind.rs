@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
 use serde_json::json;
-use socrates_draw::{Asks, LabelPage, Labeled};
+use socrates_draw::{Asks, LabelPage, Labeled, Signs};
 use socrates_model::seeds::stream_seed;
 use socrates_model::{Recording, Run};
 use socrates_stream::csv::joined;
@@ -85,7 +85,7 @@ pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Resu
         let all: [&Recording; 1] = [recording];
         let (location, paths) = (&bundle.location, &bundle.paths);
         page.add(&Labeled { name, texts: &texts, location, paths, all: &all, recording });
-        let svg = socrates_draw::contact_sheet(name, location, recording, blind.stills);
+        let svg = socrates_draw::contact_sheet(name, location, recording, blind.stills, Signs::Numbers);
         let png = socrates_draw::png_from_svg(&svg, 1.0).map_err(|why| {
             Complaint::input(format!("the stills of `{}` cannot be drawn: {why}", dir.display()), "")
                 .with_code(Code::Ours)

@@ -51,7 +51,7 @@ impl Cite {
 /// Arguments of `cost`.
 #[derive(Debug, Args)]
 pub(crate) struct Cost {
-    /// Bundle folders, or folders that hold bundles.
+    /// Bundle folders, folders that hold bundles, or folders that `labels opinion` wrote.
     #[arg(required = true)]
     what: Vec<PathBuf>,
     /// Table of prices (TOML, a table per model); default: `author.prices` of the configuration.

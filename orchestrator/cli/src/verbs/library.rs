@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use socrates_app::config::Config;
-use socrates_app::labels::{Blind, CompareOptions, ObserveOptions, ObservedOptions, PageOptions};
+use socrates_app::labels::{
+    Blind, CalibrateOptions, CompareOptions, ObserveOptions, ObservedOptions, OpinionOptions, PageOptions,
+};
 use socrates_app::library_coverage::{self, CoverageOptions};
 use socrates_app::library_diversity::{self, DiversityOptions};
 use socrates_app::merge::{self, MergeOptions};
@@ -166,6 +168,21 @@ enum LabelsVerb {
         #[arg(long, value_name = "DIR", default_value = "observed")]
         out: PathBuf,
     },
+    /// Show stills of runs to a vision model and ask which facts of their requests it sees. Off unless a model is named; no verdict knows of
+    /// it.
+    Opinion(Opinion),
+    /// Hold second opinions against labels by people: how often the judge errs, and the corrected share of facts that hold.
+    Calibrate {
+        /// Tables of answers of people (CSV): `run,rater,as_asked,sentence`.
+        #[arg(required = true)]
+        labels: Vec<PathBuf>,
+        /// The key that `labels page --films` wrote beside their page.
+        #[arg(long, value_name = "FILE")]
+        key: PathBuf,
+        /// The table of facts that `labels opinion` wrote.
+        #[arg(long, value_name = "FILE", default_value = "opinion/second_opinion.csv")]
+        opinion: PathBuf,
+    },
     /// Compare what blind judges answered with the verdicts, with each other, and on the controls.
     Compare {
         /// Tables of answers (CSV) that the page saved: `run,rater,as_asked,sentence`.
@@ -226,6 +243,40 @@ impl Observe {
     }
 }
 
+/// Arguments of `labels opinion`.
+#[derive(Debug, Clone, Args)]
+struct Opinion {
+    /// Bundle folders, or folders that hold bundles.
+    #[arg(required = true)]
+    bundles: Vec<PathBuf>,
+    /// The model that is asked, of another family than the authors: `anthropic:MODEL`, `openai:MODEL`, `vllm:MODEL`, …, with `record:FOLDER=`,
+    /// `replay:FOLDER=` or `cassette:FOLDER` as an author. Default: `author.second_opinion` of the configuration, which is empty.
+    #[arg(long, value_name = "MODEL")]
+    model: Option<String>,
+    /// Folder for the tables, the sheets of pictures and what was asked.
+    #[arg(long, short, value_name = "DIR", default_value = "opinion")]
+    out: PathBuf,
+    /// Only the first run of each bundle.
+    #[arg(long)]
+    first: bool,
+    /// Stills of each run, 8 to 12.
+    #[arg(long, value_name = "N", default_value_t = 11)]
+    stills: usize,
+    /// Times that each run is asked about, 1 to 25, the facts in another order each time.
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    repeats: usize,
+    /// Seed of the orders and of the planted facts.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+}
+
+impl Opinion {
+    fn options(&self) -> OpinionOptions {
+        let Self { bundles, model, out, first, stills, repeats, seed } = self.clone();
+        OpinionOptions { bundles, model, out, first, stills, repeats, seed }
+    }
+}
+
 /// Arguments of `labels page`.
 #[derive(Debug, Clone, Args)]
 struct Page {
@@ -264,8 +315,13 @@ impl Page {
 }
 
 impl Labels {
-    pub(super) fn act(&self, talk: &Printer) -> Outcome {
+    pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
         done(match &self.verb {
+            LabelsVerb::Opinion(opinion) => labels::opinion(talk, config, &opinion.options()).await,
+            LabelsVerb::Calibrate { labels, key, opinion } => {
+                let (labels, key, opinion) = (labels.clone(), key.clone(), opinion.clone());
+                labels::calibrate(talk, &CalibrateOptions { labels, key, opinion })
+            }
             LabelsVerb::Page(page) => labels::page(talk, &page.options()),
             LabelsVerb::Observe(observe) => labels::observe(talk, &observe.options()),
             LabelsVerb::Observed { answers, key, out } => {

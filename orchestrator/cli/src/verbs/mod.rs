@@ -124,7 +124,7 @@ pub(crate) enum Verb {
     Cost(bundle::Cost),
     /// Write bundles in formats of other simulators and data sets, with a list of what each cannot hold.
     Export(export::Export),
-    /// Let people label runs by hand.
+    /// Let people label runs by hand, and a vision model give a second opinion.
     Labels(library::Labels),
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
     Simulate(simulate::Simulate),
@@ -210,7 +210,7 @@ impl Verb {
             Self::Cite(verb) => verb.act(talk),
             Self::Cost(verb) => verb.act(talk, config),
             Self::Export(verb) => verb.act(talk),
-            Self::Labels(verb) => verb.act(talk),
+            Self::Labels(verb) => verb.act(talk, config).await,
             Self::Simulate(verb) => verb.act(talk),
             Self::Score(verb) => verb.act(talk),
             Self::Serve(verb) => verb.act(talk, config).await,

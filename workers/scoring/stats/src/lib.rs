@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! counts of runs ─► wilson          labels of two raters ─► cohen_kappa
+//! what a judge said, how often they err ─► corrected_share
 //! pairs of runs  ─► mcnemar, paired_difference
 //! times of runs  ─► kaplan_meier ─► restricted_mean
 //! values of runs ─► quantile, median ─► bootstrap_median, bootstrap_mean (seeded)
@@ -16,6 +17,7 @@
 
 mod bootstrap;
 mod clusters;
+mod corrected;
 mod dtw;
 mod kappa;
 mod mcnemar;
@@ -27,6 +29,7 @@ mod wilson;
 
 pub use bootstrap::{Bootstrap, bootstrap_mean, bootstrap_median};
 pub use clusters::Clusters;
+pub use corrected::{Corrected, Count, LEAST_YOUDEN, corrected_share, youden};
 pub use dtw::time_warp;
 pub use kappa::{cohen_kappa, krippendorff_alpha};
 pub use mcnemar::mcnemar;
