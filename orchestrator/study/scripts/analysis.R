@@ -7,6 +7,8 @@ ratings <- read.csv(file.path(folder, "ratings.csv"), colClasses = c(participant
 ours <- read.csv(file.path(folder, "results.csv"), colClasses = c(which = "character"))
 planners <- readLines(file.path(folder, "planners.txt"))
 ratings <- ratings[ratings$excluded == 0, ]
+# The optimizer that clmm takes by itself stops after 150 steps without a word, far from the maximum where answers have many levels.
+closely <- clmm.control(method = "ucminf", grtol = 1e-8, innerCtrl = "noWarn")
 compared <- 0
 far <- 0
 check <- function(scenario, dimension, statistic, which, value, by) {
@@ -72,8 +74,8 @@ for (scenario in unique(ours$scenario)) for (dimension in unique(ours$dimension[
   scores$y <- factor(round(scores$mean, 6), ordered = TRUE)
   scores$planner <- factor(scores$planner, levels = shown)
   scores$participant <- factor(scores$participant)
-  full <- tryCatch(clmm(y ~ planner + (1 | participant), data = scores, nAGQ = 10), error = function(e) NULL)
-  none <- tryCatch(clmm(y ~ 1 + (1 | participant), data = scores, nAGQ = 10), error = function(e) NULL)
+  full <- tryCatch(clmm(y ~ planner + (1 | participant), data = scores, nAGQ = 30, control = closely), error = function(e) NULL)
+  none <- tryCatch(clmm(y ~ 1 + (1 | participant), data = scores, nAGQ = 30, control = closely), error = function(e) NULL)
   if (!is.null(full) && !is.null(none)) {
     at <- coef(summary(full))
     for (p in shown[-1]) {

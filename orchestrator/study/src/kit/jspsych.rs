@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::asks::{checks, told};
 use super::orders::orders;
-use super::page::escape;
+use super::page::{escape, views};
 use crate::design::Design;
 use crate::problem::Problem;
 
@@ -19,6 +19,8 @@ const PARTS: [&str; 4] = [
     "@jspsych/plugin-html-slider-response@2.1.0/dist/index.browser.min.js",
 ];
 const STYLE: &str = "jspsych@8.3.0/css/jspsych.css";
+/// On a phone: room beside the text, and whole words at the ends of a slider.
+const LOOK: &str = ".jspsych-content{padding:0 12px;box-sizing:border-box}.jspsych-html-slider-response-container{margin:0 3.5em 3em!important}";
 const SCRIPT: &str = include_str!("web/jspsych.js");
 
 /// The page.
@@ -42,12 +44,12 @@ pub fn jspsych(design: &Design) -> Result<String, Problem> {
         .collect();
     let orders: Vec<_> = all.iter().map(|order| json!({ "name": order.name, "films": order.films })).collect();
     let data = json!({ "consent": design.survey.consent.paragraphs, "instructions": design.survey.instructions, "orders": orders, "contexts": films,
-        "blocks": told(design), "checks": checks });
+        "views": views(design), "blocks": told(design), "checks": checks });
     let data = data.to_string().replace('<', "\\u003c");
     let parts: String = PARTS.iter().map(|part| format!("<script src=\"{HOST}/{part}\"></script>\n")).collect();
     Ok(format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{}</title>\n<link rel=\"stylesheet\" href=\"{HOST}/{STYLE}\">\n{parts}</head>\n<body></body>\n\
+         <title>{}</title>\n<link rel=\"stylesheet\" href=\"{HOST}/{STYLE}\">\n<style>{LOOK}</style>\n{parts}</head>\n<body></body>\n\
          <script type=\"application/json\" id=\"data\">{data}</script>\n<script>{SCRIPT}</script>\n</html>\n",
         escape(&design.title)
     ))

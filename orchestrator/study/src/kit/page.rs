@@ -55,22 +55,28 @@ pub fn page(design: &Design) -> Result<String, Problem> {
     let source = |name: &String| design.sources.iter().find(|source| source.name == *name);
     let contexts: Vec<&str> =
         design.scenarios.iter().map(|name| source(name).map_or("", |source| source.context.as_str())).collect();
-    let is_above = |name: &String| source(name).is_none_or(|source| source.view == View::Above);
-    let mut views = Vec::new();
-    if design.scenarios.iter().any(is_above) {
-        views.push("above");
-    }
-    if !design.scenarios.iter().all(is_above) {
-        views.push("person");
-    }
     let orders: Vec<Value> = orders.iter().map(|order| json!({ "name": order.name, "films": order.films })).collect();
     let data = json!({ "key": design.digest.get(..16), "consent": design.survey.consent.paragraphs, "instructions": design.survey.instructions,
-        "orders": orders, "films": films, "contexts": contexts, "views": views, "blocks": told(design), "checks": checks });
+        "orders": orders, "films": films, "contexts": contexts, "views": views(design), "blocks": told(design), "checks": checks });
     // No `<` at all: neither the end of a script nor a comment can begin, whatever somebody wrote.
     let data = data.to_string().replace('<', "\\u003c");
     let title = escape(&design.title);
     let fill = [("title", title.as_str()), ("style", STYLE), ("data", &data), ("script", SCRIPT)];
     Ok(filled(TEMPLATE, &fill))
+}
+
+/// With whose eyes films are seen: `above`, `person`, or both.
+pub(super) fn views(design: &Design) -> Vec<&'static str> {
+    let source = |name: &String| design.sources.iter().find(|source| source.name == *name);
+    let is_above = |name: &String| source(name).is_none_or(|source| source.view == View::Above);
+    let mut found = Vec::new();
+    if design.scenarios.iter().any(is_above) {
+        found.push("above");
+    }
+    if !design.scenarios.iter().all(is_above) {
+        found.push("person");
+    }
+    found
 }
 
 /// Every `{{name}}` replaced in one pass: a value that looks like a name stays as it is.

@@ -15,9 +15,11 @@ use crate::problem::Problem;
 /// Longest description of a question, characters.
 const DESCRIPTION: usize = 100;
 /// Shows the way on once a film has ended, and says how much of it was played.
-const GATE: &str = "Qualtrics.SurveyEngine.addOnload(function(){var page=this,film=document.getElementById('film-FILM'),far=0;page.hideNextButton();\
-film.addEventListener('timeupdate',function(){if(film.currentTime-far<1.5)far=Math.max(far,film.currentTime);else film.currentTime=far;});\
-film.addEventListener('ended',function(){Qualtrics.SurveyEngine.setEmbeddedData('FILM_watched',Math.round(film.duration*10)/10);page.showNextButton();});});";
+const GATE: &str = "Qualtrics.SurveyEngine.addOnload(function(){var page=this,film=document.getElementById('film-FILM');page.hideNextButton();\
+function far(){var end=0;for(var i=0;i<film.played.length;i++)if(film.played.start(i)<=end+0.3)end=Math.max(end,film.played.end(i));return end;}\
+film.addEventListener('ratechange',function(){if(film.playbackRate!==1)film.playbackRate=1;});\
+film.addEventListener('seeking',function(){if(film.currentTime>far()+0.3)film.currentTime=far();});\
+film.addEventListener('ended',function(){Qualtrics.SurveyEngine.setEmbeddedData('FILM_watched',Math.round(far()*10)/10);if(far()>film.duration-0.5)page.showNextButton();});});";
 
 /// A QSF file and its codebook.
 #[derive(Debug, Clone, PartialEq, Eq)]

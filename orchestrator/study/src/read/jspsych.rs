@@ -43,6 +43,11 @@ pub fn jspsych(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Re
         if !matches!(kind, "survey-likert" | "video-slider-response" | "html-slider-response") {
             continue;
         }
+        // What the page adds to every line, and how long the person has been there.
+        let elapsed = sheet.number((*number, cells), "time_elapsed")?.map(|ms| ms / 1000.0);
+        let of = gather.person(id);
+        of.order = of.order.take().or_else(|| Some(cell("order")).filter(|order| !order.is_empty()).map(str::to_owned));
+        of.duration_s = of.duration_s.into_iter().chain(elapsed).reduce(f64::max);
         let check = cell("check");
         if !check.is_empty() {
             let Some(right) = design.checks.get(check) else {

@@ -55,7 +55,7 @@ pub enum NoValue {
     #[error("some conditions always won or always lost against the others: strengths have no finite estimate")]
     NotConnected,
     /// The likelihood has no maximum that could be found.
-    #[error("the likelihood has no maximum that was found; a condition may be answered in one way alone")]
+    #[error("no maximum of the likelihood was found")]
     NoMaximum,
 }
 

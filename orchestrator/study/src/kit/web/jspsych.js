@@ -3,13 +3,24 @@
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const query = new URLSearchParams(location.search);
+  const told = (text) => { const node = document.createElement("p"); node.textContent = text; node.setAttribute("role", "alert"); node.style = "margin:3em auto;max-width:44em;padding:0 1em;font-family:sans-serif"; document.body.replaceChildren(node); };
+  if (["initJsPsych", "jsPsychHtmlButtonResponse", "jsPsychSurveyLikert", "jsPsychHtmlSliderResponse"].some((part) => !globalThis[part])) {
+    told("This survey could not be loaded. Please look whether you are connected, and load the page again.");
+    return;
+  }
   const jsPsych = initJsPsych({
-    on_finish: () => {
+    on_finish: async () => {
       const csv = jsPsych.data.get().csv();
-      // A server that takes answers is named by whoever serves this page: ?post=/save. Otherwise the file is saved here.
+      // A server that takes answers is named by whoever serves this page: ?post=/save. Otherwise, and where it does not take them, the file is
+      // saved here.
       const to = query.get("post");
-      if (to && to.startsWith("/") && !to.startsWith("//")) { fetch(to, { method: "POST", headers: { "Content-Type": "text/csv" }, body: csv }); return; }
+      if (to && to.startsWith("/") && !to.startsWith("//")) {
+        told("One moment: your answers are on their way.");
+        const taken = await fetch(to, { method: "POST", headers: { "Content-Type": "text/csv" }, body: csv }).then((answer) => answer.ok, () => false);
+        if (taken) { told("Your answers have arrived. You can close this page."); return; }
+      }
       jsPsych.data.get().localSave("csv", "answers.csv");
+      told("Your answers were saved as the file answers.csv. Please send it to whoever invited you.");
     },
   });
   const safe = (text) => { const node = document.createElement("p"); node.textContent = text; return node.innerHTML; };
@@ -18,6 +29,11 @@
   const order = data.orders.find((one) => one.name === query.get("order")) || jsPsych.randomization.sampleWithoutReplacement(data.orders, 1)[0];
   jsPsych.data.addProperties({ PROLIFIC_PID: person, order: order.name });
   const steps = [{ type: jsPsychHtmlButtonResponse, stimulus: data.consent.map(paragraphs).join("") + "<p>If you do not agree, please close this page.</p>", choices: ["I agree and take part"], data: { film: "" } }];
+  const seen = [`You will watch ${order.films.length} short films of robots that move among people, and answer questions after each. The robots look the same but may act differently, and a scene can come more than once. A film can end before the robot has reached its goal.`];
+  if (data.views.includes("above")) seen.push("From above, the robot is the blue square, and each person is a circle of another color; a white arrow shows where they look. Dark: walls and furniture. Gray: floor that nobody gets to. Brown: doors.");
+  if (data.views.includes("person")) seen.push("Some films show what a person there sees. The white side of the robot is its front.");
+  seen.push("Words in a bubble: a gesture or words of the person or robot below it.");
+  steps.push({ type: jsPsychHtmlButtonResponse, stimulus: seen.map(paragraphs).join(""), choices: ["Continue"], data: { film: "" } });
   if (data.instructions) steps.push({ type: jsPsychHtmlButtonResponse, stimulus: paragraphs(data.instructions), choices: ["Continue"], data: { film: "" } });
   const likert = (block, items, more) => ({
     type: jsPsychSurveyLikert, preamble: safe(block.stem), button_label: "Continue", data: more,
@@ -26,22 +42,26 @@
   order.films.forEach((film, index) => {
     let watched = 0;
     steps.push({
-      type: jsPsychHtmlButtonResponse, choices: ["Continue to the questions"], data: { film }, enable_button_after: 0,
-      stimulus: `<p style="max-width:44em">${safe(data.contexts[film] || "")}</p><video id="shown" src="../clips/${film}.mp4" controls playsinline muted style="max-width:96vw;max-height:65vh"></video>`,
+      type: jsPsychHtmlButtonResponse, choices: ["Continue to the questions"], data: { film },
+      stimulus: `<p style="max-width:44em">${safe(data.contexts[film] || "")}</p><video id="shown" src="../clips/${film}.mp4" controls controlslist="nodownload noplaybackrate" disablepictureinpicture playsinline muted preload="auto" style="max-width:96vw;max-height:65vh"></video><p id="lost" role="alert" hidden>The film could not be loaded. <button class="jspsych-btn" type="button">Try again</button></p>`,
       on_load: () => {
-        const shown = document.getElementById("shown"), go = document.querySelector("#jspsych-html-button-response-btngroup button");
+        const shown = document.getElementById("shown"), go = document.querySelector("#jspsych-html-button-response-btngroup button"), lost = document.getElementById("lost");
         go.disabled = true;
-        let far = 0;
-        shown.addEventListener("timeupdate", () => { if (shown.currentTime - far < 1.5) far = Math.max(far, shown.currentTime); else shown.currentTime = far; });
-        shown.addEventListener("ended", () => { watched = Math.round(shown.duration * 10) / 10; go.disabled = false; });
+        // How far it was played from the beginning without a gap, as the browser itself counts it: a slow browser tells of it late.
+        const far = () => { let end = 0; for (let part = 0; part < shown.played.length; part += 1) if (shown.played.start(part) <= end + 0.3) end = Math.max(end, shown.played.end(part)); return end; };
+        shown.addEventListener("ratechange", () => { if (shown.playbackRate !== 1) shown.playbackRate = 1; });
+        shown.addEventListener("seeking", () => { if (shown.currentTime > far() + 0.3) shown.currentTime = far(); });
+        shown.addEventListener("ended", () => { watched = Math.round(far() * 10) / 10; if (far() > shown.duration - 0.5) go.disabled = false; });
+        shown.addEventListener("error", () => { lost.hidden = false; });
+        lost.querySelector("button").addEventListener("click", () => { lost.hidden = true; shown.load(); });
       },
     });
     for (const block of data.blocks) {
-      const more = { film, position: index + 1 }, seen = (of) => { of.watched_s = watched; };
-      if (block.points.length) steps.push({ ...likert(block, block.items, more), on_finish: seen });
+      const more = { film, position: index + 1 }, note = (of) => { of.watched_s = watched; };
+      if (block.points.length) steps.push({ ...likert(block, block.items, more), on_finish: note });
       else for (const [code, text] of block.items) steps.push({
         type: jsPsychHtmlSliderResponse, stimulus: `<p>${safe(block.stem)}</p><p>${safe(text)}</p>`, labels: block.anchors.map(([, words]) => safe(words)),
-        min: block.range[0], max: block.range[1], require_movement: true, button_label: "Continue", data: { ...more, item: code }, on_finish: seen,
+        min: block.range[0], max: block.range[1], require_movement: true, button_label: "Continue", data: { ...more, item: code }, on_finish: note,
       });
     }
     for (const check of data.checks.filter((one) => one.position === index + 1)) {
