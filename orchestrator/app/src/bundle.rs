@@ -201,7 +201,7 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>)
 fn asked(request: &Request) -> String {
     let task = format!("Task: {}", request.task.trim());
     match &request.rough_scenario {
-        Some(scenario) => format!("{task} Scenario: {}", scenario.trim()),
+        Some(scenario) => format!("{task} · Scenario: {}", scenario.trim()),
         None => task,
     }
 }
