@@ -299,15 +299,11 @@ fn line_problems(location: &Location, door: &Door, fault: &mut impl FnMut(FaultC
     let steps = (1..=DOOR_STEPS).map(|step| DOOR_SLACK_M * f64::from(step) / f64::from(DOOR_STEPS));
     // A wall that bends away from the door's line begins beside the line's end, half a right angle off it.
     let beside_m = (1.5 * location.grid.resolution_m).min(DOOR_SLACK_M);
-    let touches = |end: &Point, outward: &Vector| {
-        let half = Vector::new(-outward.y, outward.x);
-        [outward + half, outward - half].iter().any(|way| !location.grid.is_free(&(end + way.normalize() * beside_m)))
-    };
     for (end, outward) in [(door.from, -along), (door.to, along)] {
-        if touches(&end, &outward) {
-            continue;
-        }
-        if steps.clone().all(|off_m| location.grid.is_free(&(end + outward * off_m))) {
+        let left = Vector::new(-outward.y, outward.x);
+        let beside = [outward + left, outward - left].map(|way| end + way.normalize() * beside_m);
+        let mut looked = steps.clone().map(|off_m| end + outward * off_m).chain(beside);
+        if looked.all(|at| location.grid.is_free(&at)) {
             let message = format!(
                 "its end ({:.2}, {:.2}) m does not meet a wall within {DOOR_SLACK_M} m; the gap beside the door would stay open",
                 end.x, end.y

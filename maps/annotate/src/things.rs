@@ -18,6 +18,11 @@ const GAP_M: f64 = 0.3;
 /// Sides of a block, m: a pier of a wall is thinner, no room is smaller than its walls.
 const BLOCK_M: (f64, f64) = (0.8, 2.6);
 
+/// Whether the mark of the part of this number, from 1, is set.
+fn is_set(marks: &[bool], number: u32) -> bool {
+    (number as usize).checked_sub(1).and_then(|at| marks.get(at)) == Some(&true)
+}
+
 /// Parts of a layer of which some are marked.
 struct Marked {
     /// Number of the part of each cell, from 1.
@@ -32,7 +37,7 @@ impl Marked {
 
     /// Whether the part of this number is marked.
     fn has(&self, number: u32) -> bool {
-        (number as usize).checked_sub(1).and_then(|at| self.is_marked.get(at)) == Some(&true)
+        is_set(&self.is_marked, number)
     }
 
     /// The marked part of a cell.
@@ -44,7 +49,7 @@ impl Marked {
 /// Free-standing things of a map, by its cells.
 pub(crate) struct Things {
     furniture: Marked,
-    /// Whether the part of this number, from 0, is too short for a wall.
+    /// By part: whether it is too short for a wall.
     is_piece: Vec<bool>,
 }
 
@@ -105,8 +110,7 @@ impl Things {
             return false;
         }
         let number = self.furniture.of_cell.get(px as usize, py as usize).unwrap_or(0);
-        let is_piece = (number as usize).checked_sub(1).and_then(|at| self.is_piece.get(at)) == Some(&true);
-        is_piece || self.furniture.has(number)
+        is_set(&self.is_piece, number) || self.furniture.has(number)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Who is to be drawn: not somebody who is nowhere, and not somebody recorded who has not come yet or has gone.
+//! Whether somebody is to be drawn: not while they are nowhere, and not before they have come or after they have gone.
 
 use socrates_model::{AgentState, Recording};
 

@@ -156,7 +156,7 @@ fn legend(recording: &Recording) -> Vec<(u32, String)> {
 const MARKS_PX: f64 = 13.0;
 /// From one line of them to the next, px.
 const MARKS_LINE_PX: f64 = MARKS_PX + 3.0;
-/// So many lines of them have room above the legend; each further one moves it down.
+/// Lines of them that have room above the legend; each further one moves it down.
 const MARKS_LINES: usize = 2;
 
 /// What each mark means, in lines no wider than `room`.

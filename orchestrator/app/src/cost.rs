@@ -56,16 +56,20 @@ pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&P
     let named = config.text("author.prices");
     let file = prices.map(Path::to_path_buf).or_else(|| (!named.is_empty()).then(|| PathBuf::from(named)));
     let prices = file.as_deref().map_or_else(|| Ok(BTreeMap::new()), read_prices)?;
-    let (ledgers, what): (Vec<PathBuf>, Vec<PathBuf>) =
-        what.iter().cloned().partition(|path| ledger::in_folder(path).is_some());
-    let bundles = bundles_in(&what)?;
+    let (mut ledgers, mut folders) = (Vec::new(), Vec::new());
+    for path in what {
+        match ledger::in_folder(path) {
+            Some(file) => ledgers.push((path.clone(), sums(&ledger::read(&file)?))),
+            None => folders.push(path.clone()),
+        }
+    }
+    let bundles = bundles_in(&folders)?;
     let mut total: BTreeMap<String, Sum> = BTreeMap::new();
     let mut rows = Vec::new();
-    for bundle in ledgers.iter().chain(&bundles) {
-        let models = match ledger::in_folder(bundle) {
-            Some(file) => sums(&ledger::read(&file)?),
-            None => exchanges(bundle)?,
-        };
+    let booked = ledgers.len();
+    let of_bundles = bundles.iter().map(|bundle| Ok((bundle.clone(), exchanges(bundle)?)));
+    for asked in ledgers.into_iter().map(Ok).chain(of_bundles) {
+        let (bundle, models) = asked?;
         for (model, sum) in &models {
             total.entry(model.clone()).or_default().add(sum);
         }
@@ -93,8 +97,8 @@ pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&P
         let calls = crate::words::plural(usize::try_from(sum.unanswered).unwrap_or(usize::MAX), "call");
         talk.line(&format!("{calls} of {model} got no answer; what they cost is not known and not in the sum"));
     }
-    if !ledgers.is_empty() {
-        talk.line(&format!("{} of what was asked beside bundles", crate::words::plural(ledgers.len(), "folder")));
+    if booked > 0 {
+        talk.line(&format!("{} of what was asked beside bundles", crate::words::plural(booked, "folder")));
     }
     talk.line(&format!("{} bundles; `~` marks figures that hold estimates (bytes / 4)", bundles.len()));
     if total.keys().any(|model| money(model, &Sum::default(), &prices).is_none()) {

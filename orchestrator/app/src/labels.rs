@@ -16,6 +16,7 @@ mod key;
 mod observe;
 mod observed;
 mod opinion;
+mod share;
 mod task;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -52,18 +52,8 @@ impl Author for Replay {
         }
         let Some(other) = &self.other else {
             let near = self.cassette.nearest(&request).map(|near| told(&near, &prompt.template.id)).unwrap_or_default();
-            return Err(AskError::new(
-                FaultCode::JRequest,
-                format!(
-                    "`{}` has no recorded answer to this {} question (key {}); it holds {} exchanges{near}. Record it with \
-                     `record:{}=<author>`",
-                    self.folder,
-                    question.stage,
-                    Cassette::key(&request),
-                    self.cassette.len(),
-                    self.folder
-                ),
-            ));
+            let what = format!("{} question", question.stage);
+            return Err(not_recorded(&self.folder, &self.cassette, &request, (&what, "author"), &near));
         };
         let answer = other.ask(question).await?;
         if other.name() != socrates_offline::NAME {
@@ -109,10 +99,31 @@ impl<A: Author> Author for Recorder<A> {
     }
 }
 
+/// A question that a folder has no answer to: what is asked, by whom it can be recorded, and words about the nearest recording.
+pub(crate) fn not_recorded(
+    folder: &str,
+    cassette: &Cassette,
+    request: &ChatRequest,
+    (what, by): (&str, &str),
+    near: &str,
+) -> AskError {
+    let (key, held) = (Cassette::key(request), cassette.len());
+    let message = format!(
+        "`{folder}` has no recorded answer to this {what} (key {key}); it holds {held} exchanges{near}. Record it with \
+         `record:{folder}=<{by}>`"
+    );
+    AskError::new(FaultCode::JRequest, message)
+}
+
+/// In what the nearest recording differs.
+pub(crate) fn differs(near: &Nearest) -> String {
+    let key: String = near.key.chars().take(12).collect();
+    format!("; the nearest, {key}, differs in {}", near.differs.join(", "))
+}
+
 /// What is said of the nearest recording; where its rules are those of another version of the program, which.
 fn told(near: &Nearest, template: &str) -> String {
-    let key: String = near.key.chars().take(12).collect();
-    let differs = format!("; the nearest, {key}, differs in {}", near.differs.join(", "));
+    let differs = differs(near);
     // The second turn holds the rules, which depend on nothing but the version and the style.
     if !near.differs.iter().any(|name| name == "turns[1]") {
         return differs;

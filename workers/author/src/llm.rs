@@ -177,27 +177,30 @@ pub(crate) fn merged(turns: Vec<Turn>) -> Vec<Turn> {
     out
 }
 
-/// A chat answer as an author's answer.
+/// A chat answer as an author's answer to a prompt.
 pub(crate) fn said(answer: ChatAnswer, prompt: Prompt, style: Style) -> Answer {
+    let plain = answered(answer);
+    let how = How { template: Some(prompt.template), style: Some(style), ..plain.how };
+    Answer { sent: prompt.messages, how, ..plain }
+}
+
+/// A chat answer as an answer for the books.
+pub(crate) fn answered(answer: ChatAnswer) -> Answer {
     Answer {
         text: answer.text,
         tokens: answer.tokens,
         model: answer.model,
         cut: answer.finish == Finish::Cut,
-        sent: prompt.messages,
-        injected: Vec::new(),
         how: How {
-            template: Some(prompt.template),
-            style: Some(style),
             rung: answer.rung.map(|rung| rung.name().to_owned()),
             steps: answer.steps,
-            by_solver: false,
             cached: answer.cached,
             thought: answer.thought,
             estimated: answer.estimated,
-            picture: None,
             limits: answer.limits,
+            ..How::default()
         },
+        ..Answer::default()
     }
 }
 

@@ -2,12 +2,13 @@
 //! the books. The smallest door to the client for those who ask about what is drawn.
 
 use serde_json::Value;
-use socrates_llm::{Cassette, ChatAnswer, ChatClient, ChatError, ChatRequest, Detail, Finish, Objection, Turn};
+use socrates_llm::{Cassette, ChatAnswer, ChatClient, ChatError, ChatRequest, Detail, Objection, Turn};
 use socrates_model::{AuthorSpec, FaultCode};
 use socrates_prompts::Message;
 
 use crate::author::{Answer, AskError, How};
-use crate::llm::{MAX_TOKENS, ask_error, merged, turn};
+use crate::cassette::{differs, not_recorded};
+use crate::llm::{MAX_TOKENS, answered, ask_error, merged, turn};
 use crate::settings::{Keys, read, seeing_client};
 
 /// Times that a question is put where its answers cannot be read.
@@ -154,19 +155,11 @@ impl Onlooker {
     }
 
     fn not_recorded(&self, request: &ChatRequest) -> AskError {
-        let (folder, held, near) = self.replays.first().map_or((String::new(), 0, None), |(folder, cassette)| {
-            (folder.clone(), cassette.len(), cassette.nearest(request))
-        });
-        let near = near.map_or_else(String::new, |near| {
-            let key: String = near.key.chars().take(12).collect();
-            format!("; the nearest, {key}, differs in {}", near.differs.join(", "))
-        });
-        let message = format!(
-            "`{folder}` has no recorded answer to this question (key {}); it holds {held} exchanges{near}. Record it with \
-             `record:{folder}=<model>`",
-            Cassette::key(request)
-        );
-        AskError::new(FaultCode::JRequest, message)
+        let Some((folder, cassette)) = self.replays.first() else {
+            return AskError::new(FaultCode::JRequest, format!("`{}` is nobody who can be asked", self.name));
+        };
+        let near = cassette.nearest(request).map(|near| differs(&near)).unwrap_or_default();
+        not_recorded(folder, cassette, request, ("question", "model"), &near)
     }
 
     /// Why the server gave no answer, with the name of the model. One that takes no picture is never asked without.
@@ -204,23 +197,9 @@ fn again(answer: &str, why: &[String]) -> impl Iterator<Item = Turn> {
 
 /// An answer for the books.
 fn booked(answer: ChatAnswer, png: &[u8]) -> Answer {
-    Answer {
-        text: answer.text,
-        tokens: answer.tokens,
-        model: answer.model,
-        cut: answer.finish == Finish::Cut,
-        how: How {
-            rung: answer.rung.map(|rung| rung.name().to_owned()),
-            steps: answer.steps,
-            cached: answer.cached,
-            thought: answer.thought,
-            estimated: answer.estimated,
-            picture: Some(socrates_llm::estimate::png_size(png)),
-            limits: answer.limits,
-            ..How::default()
-        },
-        ..Answer::default()
-    }
+    let plain = answered(answer);
+    let how = How { picture: Some(socrates_llm::estimate::png_size(png)), ..plain.how };
+    Answer { how, ..plain }
 }
 
 #[cfg(test)]

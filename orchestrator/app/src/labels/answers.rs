@@ -1,11 +1,17 @@
 //! What judges answered: one line for each run and judge.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use super::door::{Door, Line};
+use super::key::{self, Named};
+use crate::exit::Complaint;
+use crate::files;
 
 /// The columns, in any order.
 pub(super) const COLUMNS: [&str; 4] = ["run", "rater", "as_asked", "sentence"];
+/// A file of answers, or a key, larger than this is not read.
+const MAX_BYTES: u64 = 16 * 1024 * 1024;
 /// Runs without an answer are named up to so many.
 const NAMED: usize = 12;
 
@@ -96,6 +102,29 @@ impl Tables {
         }
         self.answers
     }
+}
+
+/// Reads a key and the tables of answers of its page; what is wrong with the tables stands in the door.
+pub(super) fn judged(door: &mut Door, labels: &[PathBuf], key: &Path) -> Result<(Vec<Named>, Answers), Complaint> {
+    let text = files::text(key, MAX_BYTES, "--key names the key.csv that was written beside the page")?;
+    let key = key::read(&text, &key.display().to_string())?;
+    let runs: BTreeSet<&str> = key.iter().map(|named| named.name.as_str()).collect();
+    let mut tables = Tables::default();
+    for file in labels {
+        let text = files::text(file, MAX_BYTES, &wanted())?;
+        tables.read(door, &text, &file.display().to_string(), &runs);
+    }
+    let answers = tables.whole(door, &runs);
+    Ok((key, answers))
+}
+
+fn wanted() -> String {
+    format!("a table with the columns {}", COLUMNS.join(","))
+}
+
+/// What a table of answers may hold.
+pub(super) fn hint() -> String {
+    format!("{}; `as_asked` is one of {}", wanted(), Says::ALL.map(Says::word).join(", "))
 }
 
 fn answer(door: &mut Door, line: &Line) -> Option<Answer> {

@@ -5,12 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
-use socrates_stats::{Count, Interval, LEAST_YOUDEN, StatsError, Z_95, corrected_share, wilson, youden};
+use socrates_stats::{
+    Corrected, Count, Interval, LEAST_YOUDEN, StatsError, Z_95, can_correct, corrected_share, youden,
+};
 
 use super::answers::{self, Answer, Answers, Says};
 use super::door::Door;
-use super::key::{self, Named};
+use super::key::Named;
 use super::opinion::{self, Row};
+use super::share;
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
@@ -36,27 +39,18 @@ pub struct CalibrateOptions {
 
 /// Does the verb.
 pub fn calibrate(talk: &Printer, options: &CalibrateOptions) -> Result<(), Complaint> {
-    let wanted = format!("a table with the columns {}", answers::COLUMNS.join(","));
-    let key_text = files::text(&options.key, MAX_BYTES, "--key names the key.csv that was written beside the page")?;
-    let key = key::read(&key_text, &options.key.display().to_string())?;
     let hint = format!("--opinion names the {} that `labels opinion` wrote", opinion::FILE);
     let text = files::text(&options.opinion, MAX_BYTES, &hint)?;
     let rows = opinion::read(&text, &options.opinion.display().to_string())?;
-    let runs: BTreeSet<&str> = key.iter().map(|named| named.name.as_str()).collect();
-    let (mut door, mut tables) = (Door::default(), answers::Tables::default());
-    for file in &options.labels {
-        let text = files::text(file, MAX_BYTES, &wanted)?;
-        tables.read(&mut door, &text, &file.display().to_string(), &runs);
-    }
-    let labels = tables.whole(&mut door, &runs);
-    let hint = format!("{wanted}; `as_asked` is one of {}", Says::ALL.map(Says::word).join(", "));
-    door.shut("the labels", &hint, ())?;
+    let mut door = Door::default();
+    let (key, labels) = answers::judged(&mut door, &options.labels, &options.key)?;
+    door.shut("the labels", &answers::hint(), ())?;
     let found = Calibration::of(&rows, &key, &labels);
     found.say_differences(talk, &rows);
     found.fit()?;
-    let told = found.told(&rows)?;
-    found.say(talk, &rows)?;
-    talk.result(&told);
+    let share = found.share()?;
+    found.say(talk, &rows, share.as_ref());
+    talk.result(&found.told(&rows, share.as_ref())?);
     Ok(())
 }
 
@@ -153,7 +147,7 @@ impl Calibration {
             return Err(complaint);
         }
         let youden = youden(self.specificity, self.sensitivity).map_err(|why| ours(&why))?;
-        if youden < LEAST_YOUDEN - 1e-12 {
+        if !can_correct(youden) {
             let mut complaint = Complaint::input(
                 format!(
                     "the judge tells little better than chance: q0 + q1 - 1 is {youden:.3}, less than {LEAST_YOUDEN}; no share is reported"
@@ -161,23 +155,22 @@ impl Calibration {
                 "ask another model, with more stills (--stills 12), or leave the runs to people",
             );
             complaint.causes = vec![
-                format!("q1, facts that people call shown and the judge too: {}", words(self.sensitivity)),
-                format!("q0, facts that people call not shown and the judge too: {}", words(self.specificity)),
+                format!("q1, facts that people call shown and the judge too: {}", share::words(self.sensitivity)),
+                format!("q0, facts that people call not shown and the judge too: {}", share::words(self.specificity)),
             ];
             return Err(complaint);
         }
         Ok(())
     }
 
-    fn told(&self, rows: &[Row]) -> Result<Value, Complaint> {
-        let share = self.share()?;
+    fn told(&self, rows: &[Row], share: Option<&Corrected>) -> Result<Value, Complaint> {
         let theta = share.map(|found| {
             json!({"raw": found.raw, "unclipped": found.unclipped, "share": found.share.estimate, "low": found.share.low,
                 "high": found.share.high, "standard_error": found.standard_error, "variance": found.standard_error.powi(2)})
         });
         let (agree, asked) = agreement(rows);
         Ok(json!({
-            "sensitivity": told(self.sensitivity), "specificity": told(self.specificity),
+            "sensitivity": share::told(self.sensitivity), "specificity": share::told(self.specificity),
             "youden": youden(self.specificity, self.sensitivity).map_err(|why| ours(&why))?,
             "open": {"shown": self.open.0, "not_shown": self.open.1},
             "facts": {"shown": self.said.hits, "decided": self.said.of, "open": self.said_open, "runs": self.free_runs},
@@ -186,7 +179,7 @@ impl Calibration {
     }
 
     /// The corrected share of the facts of runs that nobody labeled; nothing where there are none.
-    fn share(&self) -> Result<Option<socrates_stats::Corrected>, Complaint> {
+    fn share(&self) -> Result<Option<Corrected>, Complaint> {
         if self.said.of == 0 {
             return Ok(None);
         }
@@ -217,16 +210,19 @@ impl Calibration {
         }
     }
 
-    fn say(&self, talk: &Printer, rows: &[Row]) -> Result<(), Complaint> {
-        talk.line(&format!("q1         facts that people call shown, called so: {}", words(self.sensitivity)));
-        talk.line(&format!("q0         facts that people call not shown, called so: {}", words(self.specificity)));
+    fn say(&self, talk: &Printer, rows: &[Row], share: Option<&Corrected>) {
+        talk.line(&format!("q1         facts that people call shown, called so: {}", share::words(self.sensitivity)));
+        talk.line(&format!(
+            "q0         facts that people call not shown, called so: {}",
+            share::words(self.specificity)
+        ));
         talk.line(&format!(
             "open       {} shown and {} not shown that the judge leaves open",
             self.open.0, self.open.1
         ));
         let (agree, asked) = agreement(rows);
         talk.line(&format!("repeats    {agree} of {asked} answers are those of the majority"));
-        match self.share()? {
+        match share {
             Some(found) => {
                 let Interval { estimate, low, high } = found.share;
                 talk.line(&format!(
@@ -242,7 +238,6 @@ impl Calibration {
             }
             None => talk.line("share      none: people have labeled every run that counts"),
         }
-        Ok(())
     }
 }
 
@@ -255,20 +250,6 @@ const fn add(count: &mut Count, hit: bool) {
     if hit {
         count.hits += 1;
     }
-}
-
-fn told(count: Count) -> Value {
-    let share = wilson(count.hits, count.of, Z_95).ok();
-    json!({"count": count.hits, "of": count.of, "share": share.map(|share| share.estimate), "low": share.map(|share| share.low),
-        "high": share.map(|share| share.high)})
-}
-
-fn words(count: Count) -> String {
-    let share = wilson(count.hits, count.of, Z_95).map_or_else(
-        |_none| "n/a".to_owned(),
-        |share| format!("{:.1} % ({:.1} to {:.1})", share.estimate * 100.0, share.low * 100.0, share.high * 100.0),
-    );
-    format!("{} of {}, {share}", count.hits, count.of)
 }
 
 /// Answers that are those of the majority of their fact, of all that were asked for.
@@ -311,6 +292,8 @@ fn most(labels: impl Iterator<Item = bool>) -> Option<bool> {
 
 #[cfg(test)]
 mod tests {
+    use socrates_stats::wilson;
+
     use super::super::opinion::stub::{ByPlace, Judge, Stub, rows};
     use super::*;
 

@@ -5,18 +5,17 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use socrates_model::{ScenarioId, Verdict};
-use socrates_stats::{Z_95, cohen_kappa, krippendorff_alpha, wilson};
+use socrates_stats::{Count, cohen_kappa, krippendorff_alpha};
 
 use super::answers::{self, Answers, Says};
 use super::door::Door;
-use super::key::{self, Named};
+use super::key::Named;
+use super::share;
 use super::{chunks, folders, meets, shown};
+use crate::bundle;
 use crate::exit::Complaint;
 use crate::output::Printer;
-use crate::{bundle, files};
 
-/// A file of answers, or a key, larger than this is not read.
-const MAX_BYTES: u64 = 16 * 1024 * 1024;
 /// A judge who passes more than this share of the controls is to be replaced: 4 of 20.
 const MOST_PASSED: (usize, usize) = (4, 20);
 
@@ -33,19 +32,10 @@ pub struct CompareOptions {
 
 /// Does the verb.
 pub fn compare(talk: &Printer, options: &CompareOptions) -> Result<(), Complaint> {
-    let wanted = format!("a table with the columns {}", answers::COLUMNS.join(","));
-    let key_text = files::text(&options.key, MAX_BYTES, "--key names the key.csv that was written beside the page")?;
-    let key = key::read(&key_text, &options.key.display().to_string())?;
-    let runs: BTreeSet<&str> = key.iter().map(|named| named.name.as_str()).collect();
-    let (mut door, mut tables) = (Door::default(), answers::Tables::default());
-    for file in &options.labels {
-        let text = files::text(file, MAX_BYTES, &wanted)?;
-        tables.read(&mut door, &text, &file.display().to_string(), &runs);
-    }
-    let answers = tables.whole(&mut door, &runs);
+    let mut door = Door::default();
+    let (key, answers) = answers::judged(&mut door, &options.labels, &options.key)?;
     let verdicts = verdicts(&mut door, &options.key, &key, &folders(&options.bundles)?);
-    let hint = format!("{wanted}; `as_asked` is one of {}", Says::ALL.map(Says::word).join(", "));
-    door.shut("the comparison", &hint, ())?;
+    door.shut("the comparison", &answers::hint(), ())?;
     let controls: BTreeSet<&str> = key.iter().filter(|named| named.control).map(|named| named.name.as_str()).collect();
     let figures = Figures::of(&answers, &verdicts, &controls);
     figures.say(talk);
@@ -108,29 +98,6 @@ fn verdicts(door: &mut Door, file: &Path, key: &[Named], dirs: &[PathBuf]) -> BT
     found
 }
 
-/// A count of runs with the Wilson interval of its share.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Part {
-    count: usize,
-    of: usize,
-}
-
-impl Part {
-    fn told(self) -> Value {
-        let share = wilson(self.count, self.of, Z_95).ok();
-        json!({ "count": self.count, "of": self.of, "share": share.map(|share| share.estimate),
-            "low": share.map(|share| share.low), "high": share.map(|share| share.high) })
-    }
-
-    fn words(self) -> String {
-        let share = wilson(self.count, self.of, Z_95).map_or_else(
-            |_none| "n/a".to_owned(),
-            |share| format!("{:.1} % ({:.1} to {:.1})", share.estimate * 100.0, share.low * 100.0, share.high * 100.0),
-        );
-        format!("{} of {}, {share}", self.count, self.of)
-    }
-}
-
 /// Verdicts and answers: how often each answer was given to runs with the verdict `realised`, and to the others.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 struct Confusion {
@@ -149,29 +116,29 @@ impl Confusion {
     }
 
     /// Verdict `realised`, judged `partly` or `not`.
-    fn false_realised(&self) -> Part {
+    fn false_realised(&self) -> Count {
         let [as_asked, partly, not] = self.realised;
-        Part { count: partly + not, of: as_asked + partly + not }
+        Count { hits: partly + not, of: as_asked + partly + not }
     }
 
     /// Of these, judged `not`.
-    fn realised_but_not(&self) -> Part {
+    fn realised_but_not(&self) -> Count {
         let [_, _, not] = self.realised;
-        Part { count: not, of: self.realised.iter().sum() }
+        Count { hits: not, of: self.realised.iter().sum() }
     }
 
     /// Another verdict, judged `as_asked`.
-    fn false_refusals(&self) -> Part {
+    fn false_refusals(&self) -> Count {
         let [as_asked, _, _] = self.others;
-        Part { count: as_asked, of: self.others.iter().sum() }
+        Count { hits: as_asked, of: self.others.iter().sum() }
     }
 
     fn told(&self) -> Value {
         let row = |counts: &[usize; 3]| -> BTreeMap<&str, usize> {
             Says::ALL.into_iter().map(Says::word).zip(counts.iter().copied()).collect()
         };
-        json!({ "realised": row(&self.realised), "others": row(&self.others), "false_realised": self.false_realised().told(),
-            "false_realised_not": self.realised_but_not().told(), "false_refusals": self.false_refusals().told() })
+        json!({ "realised": row(&self.realised), "others": row(&self.others), "false_realised": share::told(self.false_realised()),
+            "false_realised_not": share::told(self.realised_but_not()), "false_refusals": share::told(self.false_refusals()) })
     }
 }
 
@@ -180,7 +147,7 @@ impl Confusion {
 struct Pair {
     a: String,
     b: String,
-    same: Part,
+    same: Count,
     kappa: Option<f64>,
 }
 
@@ -188,7 +155,7 @@ struct Pair {
 #[derive(Debug, Clone, PartialEq)]
 struct Figures {
     /// By judge, with the controls that they passed.
-    judges: BTreeMap<String, (Confusion, Part)>,
+    judges: BTreeMap<String, (Confusion, Count)>,
     /// The worst answer of any judge to a run, and the best: `partly` or `not` there means that all say so.
     any: Confusion,
     all: Confusion,
@@ -205,7 +172,7 @@ impl Figures {
                 Confusion::of(own.iter().filter_map(|(run, answer)| Some((verdicts.get(run)?, answer.says))));
             let spoiled = || own.iter().filter(|(run, _)| controls.contains(run.as_str()));
             let passed = spoiled().filter(|(_, answer)| answer.says == Says::AsAsked).count();
-            (confusion, Part { count: passed, of: spoiled().count() })
+            (confusion, Count { hits: passed, of: spoiled().count() })
         };
         let judges = answers.iter().map(|(rater, own)| (rater.clone(), of_judge(own))).collect();
         let said = |run: &str| -> Vec<Says> {
@@ -231,14 +198,14 @@ impl Figures {
             .judges
             .iter()
             .map(|(rater, (confusion, controls))| {
-                json!({ "rater": rater, "verdicts": confusion.told(), "controls_passed": controls.told(),
+                json!({ "rater": rater, "verdicts": confusion.told(), "controls_passed": share::told(*controls),
                     "replace": replace(*controls) })
             })
             .collect();
         let pairs: Vec<Value> = self
             .pairs
             .iter()
-            .map(|pair| json!({ "a": pair.a, "b": pair.b, "same": pair.same.told(), "kappa": pair.kappa }))
+            .map(|pair| json!({ "a": pair.a, "b": pair.b, "same": share::told(pair.same), "kappa": pair.kappa }))
             .collect();
         let sentences: Vec<Value> = self
             .sentences
@@ -264,9 +231,9 @@ impl Figures {
         for (rater, table) in &rows {
             talk.line(&format!(
                 "{rater:<16} false realised {}; judged not: {}; false refusals {}",
-                table.false_realised().words(),
-                table.realised_but_not().words(),
-                table.false_refusals().words()
+                share::words(table.false_realised()),
+                share::words(table.realised_but_not()),
+                share::words(table.false_refusals())
             ));
         }
         for pair in &self.pairs {
@@ -274,7 +241,7 @@ impl Figures {
                 "agreement  {} and {}: {}, Cohen's kappa {}",
                 pair.a,
                 pair.b,
-                pair.same.words(),
+                share::words(pair.same),
                 shown(pair.kappa)
             ));
         }
@@ -298,7 +265,7 @@ impl Figures {
         }
         for (rater, (_, controls)) in &self.judges {
             let what = if replace(*controls) { ": to be replaced" } else { "" };
-            talk.line(&format!("controls   {rater} passed {} of {} as as_asked{what}", controls.count, controls.of));
+            talk.line(&format!("controls   {rater} passed {} of {} as as_asked{what}", controls.hits, controls.of));
         }
         let (most, of) = MOST_PASSED;
         talk.line(&format!("controls   a judge who passes more than {most} of {of} is to be replaced"));
@@ -306,8 +273,8 @@ impl Figures {
 }
 
 /// Whether a judge passes too many of the controls.
-const fn replace(controls: Part) -> bool {
-    controls.count * MOST_PASSED.1 > MOST_PASSED.0 * controls.of
+const fn replace(controls: Count) -> bool {
+    controls.hits * MOST_PASSED.1 > MOST_PASSED.0 * controls.of
 }
 
 /// Every two judges over the runs that both have judged, controls apart.
@@ -321,7 +288,7 @@ fn pairs(answers: &Answers, verdicts: &BTreeMap<String, Verdict>) -> Vec<Pair> {
                 verdicts.keys().filter_map(|run| Some((says(a, run)?, says(b, run)?))).unzip();
             let same = first.iter().zip(&second).filter(|(a, b)| a == b).count();
             let kappa = cohen_kappa(&first, &second).ok();
-            found.push(Pair { a: (*a).clone(), b: (*b).clone(), same: Part { count: same, of: first.len() }, kappa });
+            found.push(Pair { a: (*a).clone(), b: (*b).clone(), same: Count { hits: same, of: first.len() }, kappa });
         }
     }
     found
@@ -395,9 +362,9 @@ mod tests {
         assert_eq!(figures.all, Confusion { realised: [2, 0, 0], others: [1, 0, 1] });
         assert_eq!(
             (ann.false_realised(), ann.realised_but_not()),
-            (Part { count: 1, of: 2 }, Part { count: 0, of: 2 })
+            (Count { hits: 1, of: 2 }, Count { hits: 0, of: 2 })
         );
-        assert_eq!(ann.false_refusals(), Part { count: 1, of: 2 });
+        assert_eq!(ann.false_refusals(), Count { hits: 1, of: 2 });
     }
 
     #[test]
@@ -405,7 +372,7 @@ mod tests {
         let figures = figures();
         // The same in 2 of 4. Chance: as_asked 2/4 * 2/4, partly 1/4 * 0, not 1/4 * 2/4: 3/8. Kappa: (1/2 - 3/8) / (5/8) = 0.2.
         let [pair] = figures.pairs.as_slice() else { panic!("{:?}", figures.pairs) };
-        assert_eq!(pair.same, Part { count: 2, of: 4 });
+        assert_eq!(pair.same, Count { hits: 2, of: 4 });
         assert!((pair.kappa.unwrap() - 0.2).abs() < 1e-12, "{pair:?}");
         // Eight answers: 4, 1, 3. D_o = 2 + 2 of 8; D_e = (4 * 4 + 1 * 7 + 3 * 5) / 7 = 38 / 7 of 8. Alpha: 1 - 4 * 7 / 38.
         assert!((figures.alpha.unwrap() - (1.0 - 28.0 / 38.0)).abs() < 1e-12, "{:?}", figures.alpha);
@@ -416,7 +383,7 @@ mod tests {
         let figures = figures();
         assert_eq!(
             (figures.judges["ann"].1, figures.judges["bob"].1),
-            (Part { count: 1, of: 2 }, Part { count: 0, of: 2 })
+            (Count { hits: 1, of: 2 }, Count { hits: 0, of: 2 })
         );
         let runs = |runs: &[&str]| runs.iter().map(|run| (*run).to_owned()).collect::<Vec<_>>();
         let wanted =
@@ -426,7 +393,7 @@ mod tests {
 
     #[test]
     fn five_of_twenty_controls_are_too_many_and_four_are_not() {
-        let passed = |count: usize, of: usize| replace(Part { count, of });
+        let passed = |count: usize, of: usize| replace(Count { hits: count, of });
         assert_eq!(
             [passed(4, 20), passed(5, 20), passed(2, 10), passed(3, 10), passed(0, 0)],
             [false, true, false, true, false]
@@ -435,9 +402,9 @@ mod tests {
 
     #[test]
     fn the_interval_is_that_of_wilson() {
-        let told = Part { count: 8, of: 10 }.told();
+        let told = share::told(Count { hits: 8, of: 10 });
         assert!((told["low"].as_f64().unwrap() - 0.490_162_47).abs() < 1e-6, "{told}");
         assert!((told["high"].as_f64().unwrap() - 0.943_317_8).abs() < 1e-6, "{told}");
-        assert!(Part { count: 0, of: 0 }.told()["share"].is_null());
+        assert!(share::told(Count { hits: 0, of: 0 })["share"].is_null());
     }
 }

@@ -4,6 +4,7 @@
 use serde_json::json;
 
 use super::asks::{checks, told};
+use super::media::GATE;
 use super::orders::orders;
 use super::page::{escape, views};
 use crate::design::Design;
@@ -50,7 +51,7 @@ pub fn jspsych(design: &Design) -> Result<String, Problem> {
     Ok(format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{}</title>\n<link rel=\"stylesheet\" href=\"{HOST}/{STYLE}\">\n<style>{LOOK}</style>\n{parts}</head>\n<body></body>\n\
-         <script type=\"application/json\" id=\"data\">{data}</script>\n<script>{SCRIPT}</script>\n</html>\n",
+         <script type=\"application/json\" id=\"data\">{data}</script>\n<script>\"use strict\";\n{GATE}{SCRIPT}</script>\n</html>\n",
         escape(&design.title)
     ))
 }

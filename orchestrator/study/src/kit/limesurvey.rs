@@ -1,7 +1,7 @@
 //! The survey as LimeSurvey imports it: a table with tabs. Orders are random there, not balanced; `read` takes its answers back by code.
 
 use super::asks::{Block, blocks, checks};
-use super::media::{Media, video};
+use super::media::{GATE, Media, video};
 use super::orders::orders;
 use super::page::escape;
 use crate::design::Design;
@@ -140,13 +140,14 @@ pub fn limesurvey(design: &Design, media: &Media) -> Result<String, Problem> {
 
 /// Writes place and seen seconds of a film into its two hidden questions, and lets nobody on before its end.
 fn script(id: &str) -> String {
+    // A cell of the table is one line.
+    let gate = GATE.replace('\n', " ");
     format!(
-        "<script>$(function(){{var f=document.getElementById('film-{id}'),far=0;\
+        "<script>$(function(){{ {gate} var f=document.getElementById('film-{id}');\
          var field=function(end){{return $('.question-container').filter(function(){{return $(this).text().trim().indexOf(end)===0;}}).hide().find('input[type=text]');}};\
          var n=Number(sessionStorage.getItem('films')||0)+1;sessionStorage.setItem('films',n);field('position').val(n);var w=field('watched');\
          $('#ls-button-submit').prop('disabled',true);\
-         f.addEventListener('timeupdate',function(){{if(f.currentTime-far<1.5)far=Math.max(far,f.currentTime);else f.currentTime=far;}});\
-         f.addEventListener('ended',function(){{w.val(Math.round(f.duration*10)/10);$('#ls-button-submit').prop('disabled',false);}});}});</script>"
+         gate(f,function(seconds){{w.val(seconds);$('#ls-button-submit').prop('disabled',false);}});}});</script>"
     )
 }
 

@@ -2,6 +2,9 @@
 
 use crate::problem::Problem;
 
+/// A script, `gate(film, done)`, that lets nobody past a film before they have seen it.
+pub(super) const GATE: &str = include_str!("web/gate.js");
+
 /// Where films were uploaded: an address with https, without an ending slash.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Media(String);

@@ -6,7 +6,7 @@
 use serde_json::{Value, json};
 
 use super::asks::{Block, Check, blocks, checks};
-use super::media::{Media, video};
+use super::media::{GATE, Media, video};
 use super::orders::{Order, orders};
 use super::page::escape;
 use crate::design::Design;
@@ -15,11 +15,12 @@ use crate::problem::Problem;
 /// Longest description of a question, characters.
 const DESCRIPTION: usize = 100;
 /// Shows the way on once a film has ended, and says how much of it was played.
-const GATE: &str = "Qualtrics.SurveyEngine.addOnload(function(){var page=this,film=document.getElementById('film-FILM');page.hideNextButton();\
-function far(){var end=0;for(var i=0;i<film.played.length;i++)if(film.played.start(i)<=end+0.3)end=Math.max(end,film.played.end(i));return end;}\
-film.addEventListener('ratechange',function(){if(film.playbackRate!==1)film.playbackRate=1;});\
-film.addEventListener('seeking',function(){if(film.currentTime>far()+0.3)film.currentTime=far();});\
-film.addEventListener('ended',function(){Qualtrics.SurveyEngine.setEmbeddedData('FILM_watched',Math.round(far()*10)/10);if(far()>film.duration-0.5)page.showNextButton();});});";
+fn gated(film: &str) -> String {
+    format!(
+        "Qualtrics.SurveyEngine.addOnload(function(){{var page=this;page.hideNextButton();{GATE}\
+         gate(document.getElementById('film-{film}'),function(seconds){{Qualtrics.SurveyEngine.setEmbeddedData('{film}_watched',seconds);page.showNextButton();}});}});"
+    )
+}
 
 /// A QSF file and its codebook.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -83,7 +84,7 @@ impl Writer<'_> {
             &format!("{film}_film"),
             &text,
             "film",
-            json!({ "QuestionType": "DB", "Selector": "TB", "QuestionJS": GATE.replace("FILM", film) }),
+            json!({ "QuestionType": "DB", "Selector": "TB", "QuestionJS": gated(film) }),
         );
         let timer = self.question(
             &format!("{film}_time"),

@@ -2,7 +2,7 @@
 
 use socrates_model::{HumanProposal, PlaceClass};
 
-use super::{ENDS_APART_M, HURRY_MPS, ONWARD_M, ROBOT_MPS, Taken, Way, before_m, ideal_m, onward, onward_m};
+use super::{HURRY_MPS, ONWARD_M, ROBOT_MPS, Taken, Way, before_m, ideal_m, onward, onward_m};
 use crate::graph::Net;
 use crate::inside;
 use crate::robot_way::Route;
@@ -50,13 +50,12 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
             beyond_door.push(ahead);
         }
     }
-    let at_its_goal = |start: &usize| (net.at(*start) - net.at(last)).norm() < ENDS_APART_M;
     let cost = |ahead: &Vec<usize>| {
         let length = onward_m(net, meet, ahead);
         let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
-        // Who could not be in time even in a hurry would have to start in the middle of its way.
+        // A person too far away to be in time even in a hurry would have to start in the middle of their way.
         let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
-        let mirrored = if ahead.last().is_some_and(at_its_goal) { AT_ITS_GOAL } else { 0.0 };
+        let mirrored = if ahead.last().is_some_and(|start| !taken.apart(*start, last)) { AT_ITS_GOAL } else { 0.0 };
         (length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late + mirrored
     };
     let free = |ahead: &Vec<usize>| ahead.last().is_some_and(|start| taken.free(*start));

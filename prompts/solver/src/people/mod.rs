@@ -30,7 +30,7 @@ const HUMAN_MPS: f64 = 1.2;
 /// People start at least so far from each other and the robot unless they belong together, m.
 const APART_M: f64 = 0.8;
 
-/// So many may start at one node where there is no room for all to start apart.
+/// Most people who may start at one node where there is no room for all to start apart.
 const SHARED: usize = 3;
 
 /// Ways that have to meet where somebody crosses the robot's.
@@ -97,18 +97,20 @@ impl Taken<'_> {
         others == 0 || self.crowded && others < SHARED && !self.starts.iter().take(1).any(|robot| near(&robot))
     }
 
+    /// Whether two who stand at these nodes are out of each other's way.
+    fn apart(&self, one: usize, other: usize) -> bool {
+        (self.net.at(other) - self.net.at(one)).norm() >= ENDS_APART_M
+    }
+
     /// Whether somebody may end there: nobody else does near by, and nobody has to get through.
     fn can_end(&self, node: usize) -> bool {
-        let at = self.net.at(node);
-        self.net.kind(node) != PlaceClass::Doorway
-            && self.goals.iter().all(|other| (self.net.at(*other) - at).norm() >= ENDS_APART_M)
+        self.net.kind(node) != PlaceClass::Doorway && self.goals.iter().all(|other| self.apart(node, *other))
     }
 
     /// Whether somebody who comes towards the robot may end there: not where it set out either, or their way is its own read
     /// backwards.
     fn can_end_past_robot(&self, node: usize) -> bool {
-        let away = |robot: &usize| (self.net.at(*robot) - self.net.at(node)).norm() >= ENDS_APART_M;
-        self.can_end(node) && self.starts.first().is_none_or(away)
+        self.can_end(node) && self.starts.first().is_none_or(|robot| self.apart(node, *robot))
     }
 
     /// What it costs to end a way there.

@@ -53,6 +53,13 @@ pub fn youden(specificity: Count, sensitivity: Count) -> Result<f64, StatsError>
     Ok(specificity.share("specificity")? + sensitivity.share("sensitivity")? - 1.0)
 }
 
+/// Whether a judge of this [`youden`] tells enough for a share to be corrected.
+#[must_use]
+pub fn can_correct(youden: f64) -> bool {
+    // Shares are quotients: one of exactly 0.3 may come out a little below.
+    youden >= LEAST_YOUDEN - 1e-12
+}
+
 /// The true share θ behind the share `p` that an imperfect judge says, with `q0` for their specificity and `q1` for their sensitivity,
 /// both counted on other things than `said` (Rogan and Gladen 1978; interval of Lee et al. 2025, arXiv 2511.21140):
 /// `θ = (p + q0 - 1) / (q0 + q1 - 1)`, with the variance
@@ -66,8 +73,7 @@ pub fn corrected_share(said: Count, specificity: Count, sensitivity: Count, z: f
         return Err(StatsError::OutOfRange { name: "z", value: z, allowed: "above 0" });
     }
     let youden = youden(specificity, sensitivity)?;
-    // Shares are quotients: one of exactly 0.3 may come out a little below.
-    if youden < LEAST_YOUDEN - 1e-12 {
+    if !can_correct(youden) {
         return Err(StatsError::OutOfRange {
             name: "specificity + sensitivity - 1",
             value: youden,

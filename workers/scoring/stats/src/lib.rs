@@ -29,7 +29,7 @@ mod wilson;
 
 pub use bootstrap::{Bootstrap, bootstrap_mean, bootstrap_median};
 pub use clusters::Clusters;
-pub use corrected::{Corrected, Count, LEAST_YOUDEN, corrected_share, youden};
+pub use corrected::{Corrected, Count, LEAST_YOUDEN, can_correct, corrected_share, youden};
 pub use dtw::time_warp;
 pub use kappa::{cohen_kappa, krippendorff_alpha};
 pub use mcnemar::mcnemar;

@@ -1,4 +1,3 @@
-"use strict";
 // The survey for jsPsych 8. Its CSV has a line for each set of questions, with film, place and seen seconds; answers count from 0.
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -47,11 +46,7 @@
       on_load: () => {
         const shown = document.getElementById("shown"), go = document.querySelector("#jspsych-html-button-response-btngroup button"), lost = document.getElementById("lost");
         go.disabled = true;
-        // How far it was played from the beginning without a gap, as the browser itself counts it: a slow browser tells of it late.
-        const far = () => { let end = 0; for (let part = 0; part < shown.played.length; part += 1) if (shown.played.start(part) <= end + 0.3) end = Math.max(end, shown.played.end(part)); return end; };
-        shown.addEventListener("ratechange", () => { if (shown.playbackRate !== 1) shown.playbackRate = 1; });
-        shown.addEventListener("seeking", () => { if (shown.currentTime > far() + 0.3) shown.currentTime = far(); });
-        shown.addEventListener("ended", () => { watched = Math.round(far() * 10) / 10; if (far() > shown.duration - 0.5) go.disabled = false; });
+        gate(shown, (seconds) => { watched = seconds; go.disabled = false; });
         shown.addEventListener("error", () => { lost.hidden = false; });
         lost.querySelector("button").addEventListener("click", () => { lost.hidden = true; shown.load(); });
       },
