@@ -9,6 +9,42 @@ planners <- readLines(file.path(folder, "planners.txt"))
 ratings <- ratings[ratings$excluded == 0, ]
 # The optimizer that clmm takes by itself stops after 150 steps without a word, far from the maximum where answers have many levels.
 closely <- clmm.control(method = "ucminf", grtol = 1e-8, innerCtrl = "noWarn")
+# Standard errors of a cumulative mixed model at a point: second derivatives of the likelihood by a complex step, integrals by trapezoids.
+# Those of clmm are second differences with a step of 0.0001, which is too wide where thresholds lie close together.
+errors_at <- function(answer, columns, person, thresholds, effects, sigma) {
+  cuts <- length(thresholds); level <- as.integer(answer); person <- as.integer(factor(person)); count <- length(effects)
+  own <- outer(seq_len(max(person)), person, "==") + 0
+  apart <- 0.5 / sqrt(1 + sigma^2 * max(rowSums(own)) / 2)
+  v <- seq(-10, 10, by = min(apart, 0.1))
+  has_sigma <- sigma >= 1e-3
+  below <- function(x) 1 / (1 + exp(-x))
+  slope <- function(at) {
+    ends <- c(-100, at[seq_len(cuts)], 100)
+    moved <- outer(as.vector(columns %*% at[cuts + seq_len(count)]), v * (if (has_sigma) at[cuts + count + 1] else 0), "+")
+    upper <- below(ends[level + 1] - moved); lower <- below(ends[level] - moved)
+    weight <- exp(own %*% log(upper - lower) - rep(v^2 / 2, each = nrow(own)))
+    weight <- (weight / rowSums(weight))[person, , drop = FALSE]
+    up <- rowSums(weight * upper * (1 - upper) / (upper - lower)); down <- rowSums(weight * lower * (1 - lower) / (upper - lower))
+    shift <- weight * (upper + lower - 1)
+    of <- sapply(seq_len(cuts), function(cut) sum(up[level == cut]) - sum(down[level == cut + 1]))
+    c(of, as.vector(t(columns) %*% rowSums(shift)), if (has_sigma) sum(shift %*% v))
+  }
+  at <- c(thresholds, effects, if (has_sigma) sigma)
+  bend <- sapply(seq_along(at), function(i) Im(slope(replace(as.complex(at), i, at[i] + 1e-20i))) / 1e-20)
+  sqrt(diag(solve(-(bend + t(bend)) / 2)))[cuts + seq_len(count)]
+}
+# Strengths with ties by Davidson: an outcome of two is a win of one, of the other, or a tie.
+davidson <- function(wins, ties) {
+  k <- nrow(wins); pairs <- combn(k, 2)
+  minus <- function(at) {
+    s <- c(0, at[seq_len(k - 1)])
+    -sum(apply(pairs, 2, function(p) {
+      logs <- c(s[p[1]], s[p[2]], at[k] + (s[p[1]] + s[p[2]]) / 2)
+      sum(c(wins[p[1], p[2]], wins[p[2], p[1]], ties[p[1], p[2]]) * (logs - max(logs) - log(sum(exp(logs - max(logs))))))
+    }))
+  }
+  nlm(minus, rep(0, k), gradtol = 1e-10, steptol = 1e-12, iterlim = 1000)$estimate
+}
 compared <- 0
 far <- 0
 check <- function(scenario, dimension, statistic, which, value, by) {
@@ -77,12 +113,13 @@ for (scenario in unique(ours$scenario)) for (dimension in unique(ours$dimension[
   full <- tryCatch(clmm(y ~ planner + (1 | participant), data = scores, nAGQ = 30, control = closely), error = function(e) NULL)
   none <- tryCatch(clmm(y ~ 1 + (1 | participant), data = scores, nAGQ = 30, control = closely), error = function(e) NULL)
   if (!is.null(full) && !is.null(none)) {
-    at <- coef(summary(full))
+    sigma <- sqrt(as.numeric(VarCorr(full)[[1]]))
+    error <- errors_at(scores$y, model.matrix(~planner, scores)[, -1, drop = FALSE], scores$participant, full$alpha, full$beta, sigma)
     for (p in shown[-1]) {
-      check(scenario, dimension, "clmm_effect", p, at[paste0("planner", p), "Estimate"], 1e-4)
-      check(scenario, dimension, "clmm_error", p, at[paste0("planner", p), "Std. Error"], 1e-4)
+      check(scenario, dimension, "clmm_effect", p, full$beta[[paste0("planner", p)]], 1e-4)
+      check(scenario, dimension, "clmm_error", p, error[[match(p, shown[-1])]], 1e-4)
     }
-    check(scenario, dimension, "clmm_sigma", "", sqrt(as.numeric(VarCorr(full)[[1]])), 1e-4)
+    check(scenario, dimension, "clmm_sigma", "", sigma, 1e-4)
     check(scenario, dimension, "clmm_lr", "", 2 * (as.numeric(logLik(full)) - as.numeric(logLik(none))), 1e-4)
   }
   if (is.null(full) || is.null(none)) cat("clmm finds no maximum for", scenario, dimension, "and is not compared\n")
@@ -92,6 +129,12 @@ for (scenario in unique(ours$scenario)) for (dimension in unique(ours$dimension[
     a = apply(pairs, 2, function(p) sum(table[, p[1]] > table[, p[2]] + 1e-9)), b = apply(pairs, 2, function(p) sum(table[, p[2]] > table[, p[1]] + 1e-9)))
   fit <- tryCatch(BTm(cbind(a, b), first, second, data = wins, refcat = shown[1], br = FALSE), error = function(e) NULL, warning = function(w) NULL)
   if (!is.null(fit)) for (p in shown[-1]) check(scenario, dimension, "bradley_terry", p, unname(coef(fit)[paste0("..", p)]), 1e-5)
+  if (any(ours$statistic == "davidson" & ours$scenario == scenario & ours$dimension == dimension)) {
+    over <- sapply(shown, function(b) sapply(shown, function(a) sum(table[, a] > table[, b] + 1e-9)))
+    strength <- davidson(over, nrow(table) - over - t(over))
+    for (p in shown[-1]) check(scenario, dimension, "davidson", p, strength[[match(p, shown) - 1]], 1e-5)
+    check(scenario, dimension, "davidson_ties", "", strength[[length(shown)]], 1e-5)
+  }
 }
 cat(compared, "figures compared,", far, "differ\n")
 quit(status = if (far > 0 || compared == 0) 1 else 0)

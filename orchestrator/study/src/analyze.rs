@@ -193,6 +193,10 @@ pub fn results_csv(results: &Results) -> String {
         if let Ok(of) = &cell.strengths {
             of.iter().skip(1).for_each(|(planner, strength, _)| add("bradley_terry", planner, *strength));
         }
+        if let Ok((of, ties)) = &cell.strengths_with_ties {
+            of.iter().skip(1).for_each(|(planner, strength)| add("davidson", planner, *strength));
+            add("davidson_ties", "", *ties);
+        }
     }
     out
 }
