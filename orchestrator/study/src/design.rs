@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 
 use crate::instrument::{self, Instrument, Item, Scale, Written};
-use crate::kit::setup::{Source, Survey};
+use crate::kit::setup::{MINUTES, Source, Survey};
+use crate::plan::minutes;
 use crate::problem::Problem;
 use crate::rating::Film;
 
@@ -180,7 +181,7 @@ impl Design {
         instrument::apart(&instruments, file)?;
         let scenarios = check_films(&written, &bad)?;
         let film_places = written.film.iter().enumerate().map(|(at, film)| (film.id.clone(), at)).collect();
-        let design = Self {
+        let mut design = Self {
             title: written.title,
             seed: written.seed,
             planners: written.planners,
@@ -201,6 +202,9 @@ impl Design {
             digest,
             film_places,
         };
+        if let Some(minutes) = minutes(&design) {
+            design.survey.consent.fill(MINUTES, &format!("{minutes:.0}"));
+        }
         check_sources(&design, &bad)?;
         let known: Vec<String> = design.dimensions().iter().map(Dimension::id).collect();
         for hypothesis in &design.hypotheses {
