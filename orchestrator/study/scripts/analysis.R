@@ -8,30 +8,39 @@ ours <- read.csv(file.path(folder, "results.csv"), colClasses = c(which = "chara
 planners <- readLines(file.path(folder, "planners.txt"))
 ratings <- ratings[ratings$excluded == 0, ]
 # The optimizer that clmm takes by itself stops after 150 steps without a word, far from the maximum where answers have many levels.
-closely <- clmm.control(method = "ucminf", grtol = 1e-8, innerCtrl = "noWarn")
-# Standard errors of a cumulative mixed model at a point: second derivatives of the likelihood by a complex step, integrals by trapezoids.
-# Those of clmm are second differences with a step of 0.0001, which is too wide where thresholds lie close together.
-errors_at <- function(answer, columns, person, thresholds, effects, sigma) {
+closely <- clmm.control(method = "ucminf", grtol = 1e-6, innerCtrl = "noWarn")
+# A cumulative mixed model from near its maximum on: Newton's steps with second derivatives by a complex step, integrals by trapezoids.
+# The errors of clmm are second differences with a step of 0.0001, which is too wide where thresholds lie close together, and its nodes are
+# too few where people differ by more than 4 logits.
+exactly <- function(answer, columns, person, thresholds, effects, sigma) {
   cuts <- length(thresholds); level <- as.integer(answer); person <- as.integer(factor(person)); count <- length(effects)
   own <- outer(seq_len(max(person)), person, "==") + 0
-  apart <- 0.5 / sqrt(1 + sigma^2 * max(rowSums(own)) / 2)
-  v <- seq(-10, 10, by = min(apart, 0.1))
+  step <- min(0.5 / sqrt(1 + sigma^2 * max(rowSums(own)) / 2), 0.1)
+  v <- seq(-10, 10, by = step)
   has_sigma <- sigma >= 1e-3
   below <- function(x) 1 / (1 + exp(-x))
+  at <- c(thresholds, effects, if (has_sigma) sigma)
   slope <- function(at) {
     ends <- c(-100, at[seq_len(cuts)], 100)
     moved <- outer(as.vector(columns %*% at[cuts + seq_len(count)]), v * (if (has_sigma) at[cuts + count + 1] else 0), "+")
-    upper <- below(ends[level + 1] - moved); lower <- below(ends[level] - moved)
-    weight <- exp(own %*% log(upper - lower) - rep(v^2 / 2, each = nrow(own)))
+    upper <- ends[level + 1] - moved; lower <- ends[level] - moved
+    # F(u) - F(l) = F(u) F(-l) (1 - exp(l - u)) for the logistic F, without cancellation.
+    gap <- 1 - exp(ends[level] - ends[level + 1])
+    weight <- exp(own %*% (log(below(upper)) + log(below(-lower)) + log(gap)) - rep(v^2 / 2, each = nrow(own)))
+    value <- sum(log(rowSums(weight) * step / sqrt(2 * pi)))
     weight <- (weight / rowSums(weight))[person, , drop = FALSE]
-    up <- rowSums(weight * upper * (1 - upper) / (upper - lower)); down <- rowSums(weight * lower * (1 - lower) / (upper - lower))
-    shift <- weight * (upper + lower - 1)
+    up <- rowSums(weight * below(-upper) / below(-lower)) / gap; down <- rowSums(weight * below(lower) / below(upper)) / gap
+    shift <- weight * (below(upper) - below(-lower))
     of <- sapply(seq_len(cuts), function(cut) sum(up[level == cut]) - sum(down[level == cut + 1]))
-    c(of, as.vector(t(columns) %*% rowSums(shift)), if (has_sigma) sum(shift %*% v))
+    list(of = c(of, as.vector(t(columns) %*% rowSums(shift)), if (has_sigma) sum(shift %*% v)), value = value)
   }
-  at <- c(thresholds, effects, if (has_sigma) sigma)
-  bend <- sapply(seq_along(at), function(i) Im(slope(replace(as.complex(at), i, at[i] + 1e-20i))) / 1e-20)
-  sqrt(diag(solve(-(bend + t(bend)) / 2)))[cuts + seq_len(count)]
+  for (turn in 1:5) {
+    bend <- sapply(seq_along(at), function(i) Im(slope(replace(as.complex(at), i, at[i] + 1e-20i))$of) / 1e-20)
+    here <- slope(as.complex(at))
+    if (turn < 5) at <- at - solve(bend, Re(here$of))
+  }
+  errors <- sqrt(diag(solve(-(bend + t(bend)) / 2)))
+  list(effects = at[cuts + seq_len(count)], errors = errors[cuts + seq_len(count)], sigma = if (has_sigma) abs(at[cuts + count + 1]) else sigma, value = Re(here$value))
 }
 # Strengths with ties by Davidson: an outcome of two is a win of one, of the other, or a tie.
 davidson <- function(wins, ties) {
@@ -43,7 +52,7 @@ davidson <- function(wins, ties) {
       sum(c(wins[p[1], p[2]], wins[p[2], p[1]], ties[p[1], p[2]]) * (logs - max(logs) - log(sum(exp(logs - max(logs))))))
     }))
   }
-  nlm(minus, rep(0, k), gradtol = 1e-10, steptol = 1e-12, iterlim = 1000)$estimate
+  optim(rep(0, k), minus, method = "BFGS", control = list(reltol = 1e-15, maxit = 1000, ndeps = rep(1e-4, k)))$par
 }
 compared <- 0
 far <- 0
@@ -110,17 +119,19 @@ for (scenario in unique(ours$scenario)) for (dimension in unique(ours$dimension[
   scores$y <- factor(round(scores$mean, 6), ordered = TRUE)
   scores$planner <- factor(scores$planner, levels = shown)
   scores$participant <- factor(scores$participant)
-  full <- tryCatch(clmm(y ~ planner + (1 | participant), data = scores, nAGQ = 30, control = closely), error = function(e) NULL)
-  none <- tryCatch(clmm(y ~ 1 + (1 | participant), data = scores, nAGQ = 30, control = closely), error = function(e) NULL)
+  full <- tryCatch(clmm(y ~ planner + (1 | participant), data = scores, nAGQ = 10, control = closely), error = function(e) NULL)
+  none <- tryCatch(clmm(y ~ 1 + (1 | participant), data = scores, nAGQ = 10, control = closely), error = function(e) NULL)
   if (!is.null(full) && !is.null(none)) {
-    sigma <- sqrt(as.numeric(VarCorr(full)[[1]]))
-    error <- errors_at(scores$y, model.matrix(~planner, scores)[, -1, drop = FALSE], scores$participant, full$alpha, full$beta, sigma)
+    deviation <- function(fit) sqrt(as.numeric(VarCorr(fit)[[1]]))
+    by_planner <- model.matrix(~planner, scores)[, -1, drop = FALSE]
+    of <- exactly(scores$y, by_planner, scores$participant, full$alpha, full$beta, deviation(full))
+    without <- exactly(scores$y, by_planner[, 0, drop = FALSE], scores$participant, none$alpha, numeric(0), deviation(none))
     for (p in shown[-1]) {
-      check(scenario, dimension, "clmm_effect", p, full$beta[[paste0("planner", p)]], 1e-4)
-      check(scenario, dimension, "clmm_error", p, error[[match(p, shown[-1])]], 1e-4)
+      check(scenario, dimension, "clmm_effect", p, of$effects[[match(p, shown[-1])]], 1e-6)
+      check(scenario, dimension, "clmm_error", p, of$errors[[match(p, shown[-1])]], 1e-6)
     }
-    check(scenario, dimension, "clmm_sigma", "", sigma, 1e-4)
-    check(scenario, dimension, "clmm_lr", "", 2 * (as.numeric(logLik(full)) - as.numeric(logLik(none))), 1e-4)
+    check(scenario, dimension, "clmm_sigma", "", of$sigma, if (of$sigma < 0.01) 1e-3 else 1e-6)
+    check(scenario, dimension, "clmm_lr", "", 2 * (of$value - without$value), 1e-6)
   }
   if (is.null(full) || is.null(none)) cat("clmm finds no maximum for", scenario, dimension, "and is not compared\n")
   pairs <- combn(length(shown), 2)
