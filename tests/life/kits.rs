@@ -114,8 +114,13 @@ fn nothing_in_a_kit_names_a_planner_and_the_same_study_gives_the_same_kit() {
     let again = files(&at.join("again"));
     assert!(first.values().eq(again.values()), "same study, same bytes");
     let warned = std::fs::read_to_string(at.join("again.err")).unwrap();
-    assert!(warned.contains("open slot: [minutes]; by its films and items about"), "{warned}");
-    assert!(warned.contains("open slot: [mail]") && warned.contains("`slider.overall` is a single item"), "{warned}");
+    let consent = std::fs::read_to_string(at.join("kit/consent.md")).unwrap();
+    assert!(!consent.contains("[minutes]") && !warned.contains("[minutes]"), "{warned}");
+    assert!(
+        warned.contains("open slot, which people would read: [mail]")
+            && warned.contains("`slider.overall` is a single item"),
+        "{warned}"
+    );
     let plain =
         refused(at, "plain", &["build", "--no-clips", "--media-url", "http://films.example.org", "--out", "plain"]);
     assert!(

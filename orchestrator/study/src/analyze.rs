@@ -66,13 +66,15 @@ pub struct Finding {
 #[must_use]
 pub fn analyze(ratings: &Ratings, design: &Design, declared: Declared) -> Results {
     let excluded = excluded(ratings, design);
+    let mut by_scenario: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+    for row in &ratings.rows {
+        if let Some(film) = design.film(&row.film) {
+            by_scenario.entry(&film.scenario).or_default().push(row);
+        }
+    }
     let mut cells = Vec::new();
     for scenario in &design.scenarios {
-        let here: Vec<&Row> = ratings
-            .rows
-            .iter()
-            .filter(|row| design.film(&row.film).is_some_and(|film| &film.scenario == scenario))
-            .collect();
+        let here = by_scenario.get(scenario.as_str()).map_or(&[][..], Vec::as_slice);
         for dimension in design.dimensions() {
             let asked = |row: &&&Row| dimension.scale.items.iter().any(|item| item.code == row.item);
             let all: Vec<&Row> = here.iter().filter(asked).copied().collect();
@@ -190,6 +192,10 @@ pub fn results_csv(results: &Results) -> String {
         }
         if let Ok(of) = &cell.strengths {
             of.iter().skip(1).for_each(|(planner, strength, _)| add("bradley_terry", planner, *strength));
+        }
+        if let Ok((of, ties)) = &cell.strengths_with_ties {
+            of.iter().skip(1).for_each(|(planner, strength)| add("davidson", planner, *strength));
+            add("davidson_ties", "", *ties);
         }
     }
     out

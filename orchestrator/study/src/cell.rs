@@ -8,8 +8,8 @@ use serde::Serialize;
 use crate::design::{Design, Dimension};
 use crate::rating::{Rating, Row};
 use crate::stats::{
-    Clustered, Level, NoValue, Zeros, balanced_mixed, bradley_terry, chi_upper, clustered_bca, cronbach, equivalence,
-    float, friedman, icc, krippendorff, omega, ordinal, posthoc, wilcoxon,
+    Clustered, Level, NoValue, Zeros, balanced_mixed, bradley_terry, chi_upper, clustered_bca, cronbach, davidson,
+    equivalence, float, friedman, icc, krippendorff, omega, ordinal, posthoc, wilcoxon,
 };
 
 /// A figure, or why there is none.
@@ -58,6 +58,8 @@ pub struct Cell {
     pub krippendorff: Figure<f64>,
     /// Strengths by Bradley and Terry from who scored higher, ties left out: planner, strength, error.
     pub strengths: Figure<Vec<(String, f64, f64)>>,
+    /// Strengths by Davidson, ties counted: planner and strength, and the log of the prevalence of ties.
+    pub strengths_with_ties: Figure<(Vec<(String, f64)>, f64)>,
 }
 
 /// What one planner was given.
@@ -238,6 +240,7 @@ pub(crate) fn cell(design: &Design, scenario: &str, dimension: Dimension<'_>, ro
         icc: icc_of(&scores, &films),
         krippendorff: told(krippendorff(&units, Level::Ordinal)),
         strengths: strengths(&planners, &table),
+        strengths_with_ties: strengths_with_ties(&planners, &table),
     }
 }
 
@@ -395,11 +398,26 @@ fn icc_of(scores: &Scores<'_>, films: &[&str]) -> Figure<(f64, f64, usize)> {
     Ok((found.consistency.value, found.consistency_k.value, complete.len()))
 }
 
+/// How many people scored each planner (row) so against each other (column).
+fn counted(table: &DMatrix<f64>, is_so: impl Fn(f64, f64) -> bool) -> DMatrix<f64> {
+    DMatrix::from_fn(table.ncols(), table.ncols(), |i, j| {
+        float(table.column(i).iter().zip(table.column(j).iter()).filter(|(a, b)| is_so(**a, **b)).count())
+    })
+}
+
+fn wins(table: &DMatrix<f64>) -> DMatrix<f64> {
+    counted(table, |a, b| a > b + 1e-9)
+}
+
+fn strengths_with_ties(planners: &[String], table: &DMatrix<f64>) -> Figure<(Vec<(String, f64)>, f64)> {
+    let mut ties = counted(table, |a, b| libm::fabs(a - b) <= 1e-9);
+    ties.fill_diagonal(0.0);
+    let found = told(davidson(&wins(table), &ties))?;
+    Ok((planners.iter().cloned().zip(found.strengths).collect(), found.ties))
+}
+
 fn strengths(planners: &[String], table: &DMatrix<f64>) -> Figure<Vec<(String, f64, f64)>> {
-    let wins = DMatrix::from_fn(planners.len(), planners.len(), |i, j| {
-        float(table.column(i).iter().zip(table.column(j).iter()).filter(|(a, b)| **a > **b + 1e-9).count())
-    });
-    let found = told(bradley_terry(&wins))?;
+    let found = told(bradley_terry(&wins(table)))?;
     let both = found.strengths.iter().zip(&found.errors);
     Ok(planners.iter().zip(both).map(|(planner, (strength, error))| (planner.clone(), *strength, *error)).collect())
 }

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Deserialize;
 
 use crate::instrument::{self, Instrument, Item, Scale, Written};
-use crate::kit::setup::{Source, Survey};
+use crate::kit::setup::{MINUTES, Source, Survey};
+use crate::plan::minutes;
 use crate::problem::Problem;
 use crate::rating::Film;
 
@@ -51,6 +52,8 @@ pub struct Design {
     pub sources: Vec<Source>,
     /// BLAKE3 of the file's text.
     pub digest: String,
+    /// Places of the films by their names; films stay as they were read.
+    film_places: BTreeMap<String, usize>,
 }
 
 /// A declared expectation; what no hypothesis names is exploratory.
@@ -177,7 +180,8 @@ impl Design {
         }
         instrument::apart(&instruments, file)?;
         let scenarios = check_films(&written, &bad)?;
-        let design = Self {
+        let film_places = written.film.iter().enumerate().map(|(at, film)| (film.id.clone(), at)).collect();
+        let mut design = Self {
             title: written.title,
             seed: written.seed,
             planners: written.planners,
@@ -196,7 +200,11 @@ impl Design {
             survey: written.survey,
             sources: written.scenario,
             digest,
+            film_places,
         };
+        if let Some(minutes) = minutes(&design) {
+            design.survey.consent.fill(MINUTES, &format!("{minutes:.0}"));
+        }
         check_sources(&design, &bad)?;
         let known: Vec<String> = design.dimensions().iter().map(Dimension::id).collect();
         for hypothesis in &design.hypotheses {
@@ -222,9 +230,14 @@ impl Design {
     /// Instrument, scale and item of a code.
     #[must_use]
     pub fn item(&self, code: &str) -> Option<(Dimension<'_>, &Item)> {
-        let of = |dimension: Dimension<'_>| dimension.scale.items.iter().position(|item| item.code == code);
-        let (dimension, at) = self.dimensions().into_iter().find_map(|one| Some((one, of(one)?)))?;
-        dimension.scale.items.get(at).map(|item| (dimension, item))
+        let scales = self
+            .instruments
+            .iter()
+            .flat_map(|instrument| instrument.scales.iter().map(move |scale| (instrument, scale)));
+        let mut items = scales.flat_map(|(instrument, scale)| {
+            scale.items.iter().map(move |item| (Dimension { instrument, scale }, item))
+        });
+        items.find(|(_, item)| item.code == code)
     }
 
     /// All item codes.
@@ -236,7 +249,7 @@ impl Design {
     /// A film by its name.
     #[must_use]
     pub fn film(&self, id: &str) -> Option<&Film> {
-        self.films.iter().find(|film| film.id == id)
+        self.film_places.get(id).and_then(|at| self.films.get(*at))
     }
 
     /// Whether a hypothesis was declared about a dimension in a scenario.

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::design::Design;
 use crate::instrument::{Instrument, SCALE_ITEMS};
-use crate::rating::Ratings;
+use crate::rating::{Ratings, Row};
 
 /// A film counts as left when this much of it was not played, s: players report its end late.
 const END_S: f64 = 0.5;
@@ -50,9 +50,11 @@ pub fn declared(design: &Design) -> Vec<(&'static str, String)> {
 pub fn excluded(ratings: &Ratings, design: &Design) -> BTreeMap<String, Vec<&'static str>> {
     let rules = &design.exclusions;
     let mut found: BTreeMap<String, Vec<&'static str>> = BTreeMap::new();
+    let mut said: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+    ratings.rows.iter().for_each(|row| said.entry(&row.participant).or_default().push(row));
     for person in &ratings.participants {
         let mut broken = Vec::new();
-        let rows = || ratings.rows.iter().filter(|row| row.participant == person.id);
+        let rows = said.get(person.id.as_str()).map_or(&[][..], Vec::as_slice);
         let failed = person.checks.map_or(0, |(_, failed)| failed);
         if rules.failed_checks > 0 && failed >= rules.failed_checks {
             broken.push("failed-checks");
@@ -61,15 +63,15 @@ pub fn excluded(ratings: &Ratings, design: &Design) -> BTreeMap<String, Vec<&'st
         let left = |watched: Option<f64>, film: &str| {
             watched.zip(length(film)).is_some_and(|(watched, length)| watched < length - END_S)
         };
-        if rules.left_early && rows().any(|row| left(row.watched_s, &row.film)) {
+        if rules.left_early && rows.iter().any(|row| left(row.watched_s, &row.film)) {
             broken.push("left-early");
         }
-        let films: BTreeSet<&str> = rows().map(|row| row.film.as_str()).collect();
+        let films: BTreeSet<&str> = rows.iter().map(|row| row.film.as_str()).collect();
         let lengths: f64 = films.iter().filter_map(|film| length(film)).sum();
         if rules.too_fast && person.duration_s.is_some_and(|taken| taken < lengths) {
             broken.push("too-fast");
         }
-        if rules.straight_lines > 0 && straight(ratings, design, &person.id) >= rules.straight_lines as usize {
+        if rules.straight_lines > 0 && straight(rows, design) >= rules.straight_lines as usize {
             broken.push("straight-lines");
         }
         let bad = |status: &String| matches!(status.as_str(), "REJECTED" | "RETURNED" | "TIMED-OUT" | "SCREENED OUT");
@@ -83,14 +85,14 @@ pub fn excluded(ratings: &Ratings, design: &Design) -> BTreeMap<String, Vec<&'st
     found
 }
 
-/// Blocks (an instrument about a film) of at least three answers that are all the same, as they were clicked. Where the study has an
+/// Blocks (an instrument about a film) of at least three of a person's answers that are all the same, as they were clicked. Where the study has an
 /// instrument with reversed items, only blocks of such instruments count: whoever finds a robot excellent may honestly give the
 /// highest answer to all items that are keyed alike.
-fn straight(ratings: &Ratings, design: &Design, person: &str) -> usize {
+fn straight(rows: &[&Row], design: &Design) -> usize {
     let mixed = |of: &Instrument| of.scales.iter().flat_map(|scale| &scale.items).any(|item| item.reversed);
     let any_mixed = design.instruments.iter().any(mixed);
     let mut blocks: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
-    for row in ratings.rows.iter().filter(|row| row.participant == person) {
+    for row in rows {
         let (Some((dimension, _)), Some(points)) = (design.item(&row.item), row.rating.points()) else { continue };
         if any_mixed && !mixed(dimension.instrument) {
             continue;

@@ -3,7 +3,8 @@
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use crate::design::williams;
+use crate::design::{Design, williams};
+use crate::kit::orders::films_each;
 use crate::simulate::Draws;
 use crate::stats::{Zeros, float, friedman_by_chi2, holm, wilcoxon};
 
@@ -122,6 +123,14 @@ pub fn pay(films: usize, length_s: f64, items: usize, people: usize, hourly: f64
     // Consent, instructions, checks and questions about the person; then each film and about 5 s for an item.
     let minutes = 4.0 + float(films) * (length_s + 5.0 * float(items)) / 60.0;
     (minutes, float(people) * hourly * minutes / 60.0)
+}
+
+/// Minutes that a study takes each person; none where no film has a length.
+#[must_use]
+pub fn minutes(design: &Design) -> Option<f64> {
+    let lengths: Vec<f64> = design.films.iter().filter_map(|film| film.length_s).collect();
+    let length_s = socrates_stats::mean(&lengths).ok()?;
+    Some(pay(films_each(design), length_s, design.codes().count(), 1, 0.0).0)
 }
 
 #[cfg(test)]

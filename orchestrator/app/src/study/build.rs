@@ -16,9 +16,8 @@ use socrates_draw::{Film, FilmOptions, Shown};
 use socrates_model::{Digest, PlannerName, Recording};
 use socrates_study::design::Design;
 use socrates_study::kit::media::Media;
-use socrates_study::kit::setup::MINUTES;
 use socrates_study::kit::{advanced, asks, jspsych, limesurvey, orders, page, qsf};
-use socrates_study::plan::pay;
+use socrates_study::plan::minutes;
 use socrates_study::rating::Film as Declared;
 
 use super::scenes::{self, Scene};
@@ -353,9 +352,10 @@ fn tell(
         }
     }
     for slot in &design.survey.consent.open_slots {
-        let about = if slot == MINUTES { minutes(design, films) } else { None };
-        let about = about.map_or_else(String::new, |minutes| format!("; by its films and items about {minutes:.0}"));
-        talk.warn(&format!("the text of consent has an open slot: [{slot}]{about}"));
+        talk.warn(&format!("the text of consent has an open slot, which people would read: [{slot}]"));
+    }
+    if let Some(minutes) = minutes(design) {
+        talk.line(&format!("time       about {minutes:.0} min for each person"));
     }
     for dimension in design.dimensions().into_iter().filter(|dimension| dimension.scale.is_single()) {
         talk.warn(&format!("`{}` is a single item: fewer than three items make no scale", dimension.id()));
@@ -383,13 +383,6 @@ fn tell(
     talk.line(&format!("serve      socrates study serve {}", out.display()));
     talk.result(&json!({ "kit": out, "page": page, "secret": secret, "orders": all.len(), "films": design.films.len(), "clips": clips,
         "digest": design.digest }));
-}
-
-/// How long a person takes, minutes; none where no film has a length.
-fn minutes(design: &Design, films: usize) -> Option<f64> {
-    let lengths: Vec<f64> = design.films.iter().filter_map(|film| film.length_s).collect();
-    let items: usize = design.dimensions().iter().map(|dimension| dimension.scale.items.len()).sum();
-    Some(pay(films, socrates_stats::mean(&lengths).ok()?, items, 1, 0.0).0)
 }
 
 #[cfg(test)]

@@ -1,16 +1,18 @@
 //! The survey in Qualtrics' Advanced Format: for where a QSF is refused. It knows neither orders nor gates; a block says what to set by hand.
 
 use super::asks::{Block, blocks, checks};
+use super::legend;
 use super::media::{Media, video};
 use super::orders::orders;
 use super::page::escape;
+use super::setup::agreed;
 use crate::design::Design;
 use crate::problem::Problem;
 
 /// The survey as text.
 ///
 /// # Errors
-/// An attention check that cannot be answered.
+/// An attention check that cannot be answered, a text of consent that does not say how long it takes.
 pub fn advanced(design: &Design, media: &Media) -> Result<String, Problem> {
     let all = orders(design);
     let most = all.iter().map(|order| order.films.len()).max().unwrap_or(0);
@@ -35,9 +37,11 @@ pub fn advanced(design: &Design, media: &Media) -> Result<String, Problem> {
          4. An end of survey that leads back. In each film block hide the next button until the film has ended.\n\n",
         orders.join("<br>")
     ));
-    let consent = escape(&design.survey.consent.text()).replace("\n\n", "<br><br>").replace('\n', " ");
+    let consent = escape(&agreed(design)?.text()).replace("\n\n", "<br><br>").replace('\n', " ");
     out.push_str(&format!(
-        "[[Block:consent]]\n[[Question:MC:SingleAnswer:Vertical]]\n[[ID:consent]]\n{consent}\n[[Choices]]\nI agree and take part\n\n"
+        "[[Block:consent]]\n[[Question:MC:SingleAnswer:Vertical]]\n[[ID:consent]]\n{consent}\n[[Choices]]\nI agree and take part\n[[PageBreak]]\n\
+         [[Question:DB]]\n[[ID:seen]]\n{}\n\n",
+        legend::paragraphs(design).iter().map(|part| escape(part)).collect::<Vec<_>>().join("<br><br>")
     ));
     let mut films: Vec<&str> = design.films.iter().map(|film| film.id.as_str()).collect();
     films.sort_unstable();

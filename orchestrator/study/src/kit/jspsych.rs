@@ -4,9 +4,11 @@
 use serde_json::json;
 
 use super::asks::{checks, told};
+use super::legend;
 use super::media::GATE;
 use super::orders::orders;
-use super::page::{escape, views};
+use super::page::escape;
+use super::setup::agreed;
 use crate::design::Design;
 use crate::problem::Problem;
 
@@ -27,7 +29,7 @@ const SCRIPT: &str = include_str!("web/jspsych.js");
 /// The page.
 ///
 /// # Errors
-/// An attention check that cannot be answered.
+/// An attention check that cannot be answered, a text of consent that does not say how long it takes.
 pub fn jspsych(design: &Design) -> Result<String, Problem> {
     let all = orders(design);
     let most = all.iter().map(|order| order.films.len()).max().unwrap_or(0);
@@ -44,8 +46,8 @@ pub fn jspsych(design: &Design) -> Result<String, Problem> {
         })
         .collect();
     let orders: Vec<_> = all.iter().map(|order| json!({ "name": order.name, "films": order.films })).collect();
-    let data = json!({ "consent": design.survey.consent.paragraphs, "instructions": design.survey.instructions, "orders": orders, "contexts": films,
-        "views": views(design), "blocks": told(design), "checks": checks });
+    let data = json!({ "consent": agreed(design)?.paragraphs, "instructions": design.survey.instructions, "orders": orders, "contexts": films,
+        "about": legend::FILMS, "shapes": legend::shapes(design), "blocks": told(design), "checks": checks });
     let data = data.to_string().replace('<', "\\u003c");
     let parts: String = PARTS.iter().map(|part| format!("<script src=\"{HOST}/{part}\"></script>\n")).collect();
     Ok(format!(

@@ -1,9 +1,11 @@
 //! The survey as LimeSurvey imports it: a table with tabs. Orders are random there, not balanced; `read` takes its answers back by code.
 
 use super::asks::{Block, blocks, checks};
+use super::legend;
 use super::media::{GATE, Media, video};
 use super::orders::orders;
 use super::page::escape;
+use super::setup::agreed;
 use crate::design::Design;
 use crate::problem::Problem;
 
@@ -29,6 +31,9 @@ const COLUMNS: [&str; 16] = [
 
 /// The code of the question that holds who comes.
 pub const PERSON: &str = "PROLIFICPID";
+
+/// The code of the text that says what films show.
+pub(crate) const SEEN: &str = "seen";
 
 /// A name as a code of LimeSurvey: letters and digits.
 #[must_use]
@@ -64,7 +69,7 @@ impl Rows {
 /// The survey as text with tabs.
 ///
 /// # Errors
-/// An attention check that cannot be answered.
+/// An attention check that cannot be answered, a text of consent that does not say how long it takes.
 pub fn limesurvey(design: &Design, media: &Media) -> Result<String, Problem> {
     let all = orders(design);
     let most = all.iter().map(|order| order.films.len()).max().unwrap_or(0);
@@ -85,7 +90,7 @@ pub fn limesurvey(design: &Design, media: &Media) -> Result<String, Problem> {
         rows.add("SL", "", "surveyls_url", url, &[]);
     }
     rows.add("G", "", "consent", "", &[("relevance", "1".to_owned())]);
-    let consent = escape(&design.survey.consent.text()).replace("\n\n", "<br><br>");
+    let consent = escape(&agreed(design)?.text()).replace("\n\n", "<br><br>");
     rows.question(
         "L",
         "consent",
@@ -101,6 +106,9 @@ pub fn limesurvey(design: &Design, media: &Media) -> Result<String, Problem> {
         let draw = format!("{{if(is_empty(scenario.NAOK),rand(1,{scenarios}),scenario.NAOK)}}");
         rows.question("*", "scenario", &draw, &[("hidden", "1".to_owned())]);
     }
+    rows.add("G", "", "seen", "", &[("relevance", "1".to_owned())]);
+    let seen: String = legend::paragraphs(design).iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
+    rows.question("X", SEEN, &seen, &[]);
     let mut films: Vec<&crate::rating::Film> = design.films.iter().collect();
     films.sort_by(|a, b| a.id.cmp(&b.id));
     for film in films {

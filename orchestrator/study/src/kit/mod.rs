@@ -12,6 +12,7 @@ pub mod advanced;
 pub mod asks;
 pub mod journal;
 pub mod jspsych;
+pub mod legend;
 pub mod limesurvey;
 pub mod media;
 pub mod orders;

@@ -24,9 +24,7 @@ pub struct Order {
 pub fn orders(design: &Design) -> Vec<Order> {
     let planners = williams(design.planners.len());
     let scenarios: Vec<&str> = design.scenarios.iter().map(String::as_str).collect();
-    let most = design.films_per_person.unwrap_or(MOST_FILMS);
-    let size =
-        if design.all_scenarios { (most / design.planners.len().max(1)).clamp(1, scenarios.len().max(1)) } else { 1 };
+    let size = scenarios_each(design);
     let blocks = choices(&scenarios, size);
     let rows = williams(size);
     let mut found = Vec::new();
@@ -42,6 +40,19 @@ pub fn orders(design: &Design) -> Vec<Order> {
         }
     }
     found
+}
+
+/// Scenarios that each person sees.
+fn scenarios_each(design: &Design) -> usize {
+    let most = design.films_per_person.unwrap_or(MOST_FILMS);
+    let fit = (most / design.planners.len().max(1)).clamp(1, design.scenarios.len().max(1));
+    if design.all_scenarios { fit } else { 1 }
+}
+
+/// Films that each person sees, where every planner has one in every scenario.
+#[must_use]
+pub fn films_each(design: &Design) -> usize {
+    scenarios_each(design) * design.planners.len()
 }
 
 /// Seeds of which every planner has a film, at most over all scenarios.

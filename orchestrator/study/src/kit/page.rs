@@ -3,8 +3,9 @@
 use serde_json::{Value, json};
 
 use super::asks::{checks, told};
+use super::legend;
 use super::orders::orders;
-use super::setup::View;
+use super::setup::{View, agreed};
 use crate::design::Design;
 use crate::problem::Problem;
 
@@ -38,8 +39,9 @@ pub fn film_script(id: &str, film: &Picture<'_>) -> String {
 /// The page of a study.
 ///
 /// # Errors
-/// An attention check that cannot be answered.
+/// An attention check that cannot be answered, a text of consent that does not say how long it takes.
 pub fn page(design: &Design) -> Result<String, Problem> {
+    let consent = agreed(design)?;
     let orders = orders(design);
     let most = orders.iter().map(|order| order.films.len()).max().unwrap_or(0);
     let checks: Vec<Value> = checks(design, most)?
@@ -56,8 +58,8 @@ pub fn page(design: &Design) -> Result<String, Problem> {
     let contexts: Vec<&str> =
         design.scenarios.iter().map(|name| source(name).map_or("", |source| source.context.as_str())).collect();
     let orders: Vec<Value> = orders.iter().map(|order| json!({ "name": order.name, "films": order.films })).collect();
-    let data = json!({ "key": design.digest.get(..16), "consent": design.survey.consent.paragraphs, "instructions": design.survey.instructions,
-        "orders": orders, "films": films, "contexts": contexts, "views": views(design), "blocks": told(design), "checks": checks });
+    let data = json!({ "key": design.digest.get(..16), "consent": consent.paragraphs, "instructions": design.survey.instructions,
+        "orders": orders, "films": films, "contexts": contexts, "about": legend::FILMS, "shapes": legend::shapes(design), "blocks": told(design), "checks": checks });
     // No `<` at all: neither the end of a script nor a comment can begin, whatever somebody wrote.
     let data = data.to_string().replace('<', "\\u003c");
     let title = escape(&design.title);

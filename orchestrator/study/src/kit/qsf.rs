@@ -6,9 +6,11 @@
 use serde_json::{Value, json};
 
 use super::asks::{Block, Check, blocks, checks};
+use super::legend;
 use super::media::{GATE, Media, video};
 use super::orders::{Order, orders};
 use super::page::escape;
+use super::setup::agreed;
 use crate::design::Design;
 use crate::problem::Problem;
 
@@ -178,24 +180,25 @@ impl Writer<'_> {
 /// The survey and its codebook.
 ///
 /// # Errors
-/// An attention check that cannot be answered.
+/// An attention check that cannot be answered, a text of consent that does not say how long it takes.
 pub fn qsf(design: &Design, media: &Media) -> Result<Qsf, Problem> {
     let all = orders(design);
     let most = all.iter().map(|order| order.films.len()).max().unwrap_or(0);
     let checks = checks(design, most)?;
     let id = format!("SV_{}", design.digest.get(..15).unwrap_or_default());
     let mut writer = Writer { id: id.clone(), design, questions: Vec::new(), blocks: Vec::new(), codebook: Vec::new() };
-    let consent: String =
-        design.survey.consent.paragraphs.iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
-    let agreed = writer.question(
+    let consent: String = agreed(design)?.paragraphs.iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
+    let agrees = writer.question(
         "consent",
         &format!("{consent}<p>If you do not agree, please close this page.</p>"),
         "consent",
         json!({ "QuestionType": "MC", "Selector": "SAVR", "SubSelector": "TX", "Choices": { "1": { "Display": "I agree and take part" } }, "ChoiceOrder": ["1"],
             "Validation": { "Settings": { "ForceResponse": "ON", "ForceResponseType": "ON", "Type": "None" } } }),
     );
-    writer.codebook.push(format!("{agreed},ignored,,"));
-    let first = writer.block("consent", "Default", &[Some(agreed)]);
+    writer.codebook.push(format!("{agrees},ignored,,"));
+    let seen: String = legend::paragraphs(design).iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
+    let seen = writer.question("seen", &seen, "what films show", json!({ "QuestionType": "DB", "Selector": "TB" }));
+    let first = writer.block("consent", "Default", &[Some(agrees), None, Some(seen)]);
     let mut films: Vec<(String, String)> = Vec::new();
     for film in &design.films {
         let block = writer.film(&film.id, media);
@@ -334,8 +337,8 @@ mod tests {
         let kinds: Vec<&str> = elements.iter().map(|element| element["Element"].as_str().unwrap()).collect();
         assert_eq!(&kinds[..8], ["FL", "SO", "SCO", "PROJ", "STAT", "QC", "RS", "BL"]);
         let questions: Vec<&Value> = elements.iter().filter(|element| element["Element"] == "SQ").collect();
-        // Consent, of each of three films the film, its time and three instruments, two checks.
-        assert_eq!(questions.len(), 1 + 3 * 5 + 2);
+        // Consent, what shapes mean, of each of three films the film, its time and three instruments, two checks.
+        assert_eq!(questions.len(), 2 + 3 * 5 + 2);
         assert_eq!(elements[5]["SecondaryAttribute"], json!(questions.len().to_string()));
         let numbers: BTreeSet<&str> = questions.iter().map(|one| one["PrimaryAttribute"].as_str().unwrap()).collect();
         assert_eq!(numbers.len(), questions.len());

@@ -2,11 +2,15 @@
 
 use serde::Deserialize;
 
+use crate::design::Design;
+use crate::problem::Problem;
+
 /// What participants read besides films and questions.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Survey {
-    /// What people agree to, paragraphs parted by empty lines; `[words in brackets]` are open slots.
+    /// What people agree to, paragraphs parted by empty lines; `[words in brackets]` are open slots. `[minutes]` is filled where films
+    /// have lengths.
     pub consent: Consent,
     /// What is said before the first film, behind how people and robot are drawn.
     pub instructions: String,
@@ -25,7 +29,7 @@ have answered until then can be deleted if you write to us within [days] days.\n
 random name. We do not keep your network address, your place or anything else that tells who you are. Answers are published without \
 names.\n\nQuestions: [mail]. Ethics approval: [board and number].";
 
-/// The slot of the default text for how long it takes.
+/// The slot for how long it takes.
 pub const MINUTES: &str = "minutes";
 
 impl Default for Survey {
@@ -63,6 +67,28 @@ impl Consent {
     pub fn text(&self) -> String {
         self.paragraphs.join("\n\n")
     }
+
+    /// Writes words into a slot, wherever it stands.
+    pub(crate) fn fill(&mut self, slot: &str, words: &str) {
+        let written = format!("[{slot}]");
+        self.paragraphs.iter_mut().for_each(|part| *part = part.replace(&written, words));
+        self.open_slots.retain(|open| open != slot);
+    }
+}
+
+/// The text that participants of a study agree to.
+///
+/// # Errors
+/// It is to say how long taking part lasts, and no film has a length.
+pub fn agreed(design: &Design) -> Result<&Consent, Problem> {
+    let consent = &design.survey.consent;
+    if consent.open_slots.iter().any(|slot| slot == MINUTES) {
+        let hint = "give films their `length_s`, from which the minutes follow, or write the minutes yourself";
+        return Err(Problem::new("the study", "no film has a length, and people would read the open slot", hint)
+            .column("survey.consent")
+            .value(&format!("[{MINUTES}]")));
+    }
+    Ok(consent)
 }
 
 /// Where a film is seen from.
@@ -140,6 +166,24 @@ mod tests {
         );
         assert_eq!(consent.paragraphs.len(), 6);
         assert_eq!(Consent::from(consent.text()), consent);
+    }
+
+    #[test]
+    fn the_minutes_follow_from_films_and_items_or_the_survey_is_refused() {
+        let text = "title = \"t\"\nplanners = [\"mppi\", \"ha\"]\nparticipants = 42\ninstruments = [\"psi\"]\nfilm = [\
+            { id = \"k7f\", scenario = \"s\", planner = \"mppi\", length_s = 20 }, { id = \"q2b\", scenario = \"s\", planner = \"ha\", length_s = 20 }]\n";
+        let design = Design::parse(text, "study.toml").unwrap();
+        let told = agreed(&design).unwrap();
+        // 4 min, two films of 20 s, eight items of 5 s about each.
+        assert!(told.text().contains("It takes about 6 minutes.") && !told.open_slots.contains(&MINUTES.to_owned()));
+        assert_eq!(told.open_slots.len(), 5, "what nobody else can know stays open");
+        let unknown = Design::parse(&text.replace(", length_s = 20", ""), "study.toml").unwrap();
+        for why in [crate::kit::page::page(&unknown), crate::kit::jspsych::jspsych(&unknown)] {
+            let why = why.unwrap_err().to_string();
+            assert!(why.contains("`survey.consent` is `[minutes]`") && why.contains("length_s"), "{why}");
+        }
+        let own = format!("{}[survey]\nconsent = \"It takes 5 minutes.\"\n", text.replace(", length_s = 20", ""));
+        assert!(agreed(&Design::parse(&own, "study.toml").unwrap()).is_ok());
     }
 
     #[test]

@@ -4,12 +4,12 @@ use super::sheet::Sheet;
 use super::{Gather, Pseudonyms, Spot, count_check};
 use crate::design::Design;
 use crate::kit::asks::is_right;
-use crate::kit::limesurvey::{PERSON, code};
+use crate::kit::limesurvey::{PERSON, SEEN, code};
 use crate::problem::Problem;
 use crate::rating::{Rating, Ratings, Row};
 
 /// Columns that LimeSurvey adds, and those of our own survey that nothing here needs; addresses are never looked at.
-const IGNORED: [&str; 15] = [
+const IGNORED: [&str; 16] = [
     "id",
     "submitdate",
     "lastpage",
@@ -21,6 +21,7 @@ const IGNORED: [&str; 15] = [
     "ipaddr",
     "refurl",
     "consent",
+    SEEN,
     "scenario",
     "groupTime",
     "questionTime",

@@ -232,8 +232,7 @@ impl Ratings {
             all.participants.extend(part.participants.into_iter().filter(|person| people.insert(person.id.clone())));
             all.rows.extend(part.rows);
         }
-        let key = |row: &Row| (row.participant.clone(), row.film.clone(), row.item.clone());
-        all.rows.sort_by_key(key);
+        all.rows.sort_by(|a, b| (&a.participant, &a.film, &a.item).cmp(&(&b.participant, &b.film, &b.item)));
         all.participants.sort_by(|a, b| a.id.cmp(&b.id));
         Ok(all)
     }

@@ -1,5 +1,7 @@
 //! Prolific's export of submissions.
 
+use std::collections::BTreeMap;
+
 use super::Pseudonyms;
 use super::sheet::Sheet;
 use crate::problem::Problem;
@@ -29,6 +31,7 @@ pub fn prolific(text: &str, file: &str, names: Pseudonyms) -> Result<Vec<(String
     let sheet = Sheet::read(text, file)?;
     sheet.need(&["Participant id", "Status"])?;
     let mut found: Vec<(String, Submission)> = Vec::new();
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
     for (number, cells) in &sheet.lines {
         let bad = |column: &str, value: &str, what: &str, hint: &str| {
             Problem::new(file, what, hint).line(*number).column(column).value(value)
@@ -54,7 +57,8 @@ pub fn prolific(text: &str, file: &str, names: Pseudonyms) -> Result<Vec<(String
                 .map(|age| format!("{}-{}", age / 10 * 10, age / 10 * 10 + 9)),
             sex: told(sheet.cell(cells, "Sex")),
         };
-        if let Some((_, first)) = found.iter_mut().find(|(one, _)| *one == name) {
+        let place = *places.entry(name.clone()).or_insert(found.len());
+        if let Some((_, first)) = found.get_mut(place) {
             // A person may return a submission and come again: the one that counts is kept.
             let counts = |of: &Submission| matches!(of.status.as_str(), "APPROVED" | "AWAITING REVIEW");
             if counts(first) && counts(&submission) {

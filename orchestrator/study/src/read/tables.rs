@@ -1,5 +1,7 @@
 //! The tidy tables: one line for each rating, one for each person.
 
+use std::collections::BTreeMap;
+
 use super::sheet::Sheet;
 use super::{Gather, Pseudonyms, Spot};
 use crate::design::Design;
@@ -49,10 +51,9 @@ fn shown(number: Option<f64>) -> String {
 /// they stay.
 #[must_use]
 pub fn ratings_csv(ratings: &Ratings, design: &Design, excluded_by: &dyn Fn(&str) -> Vec<&'static str>) -> String {
-    let order = |id: &str| {
-        let of = ratings.participants.iter().find(|person| person.id == id);
-        of.and_then(|person| person.order.clone()).unwrap_or_default()
-    };
+    let orders: BTreeMap<&str, &str> =
+        ratings.participants.iter().filter_map(|person| Some((person.id.as_str(), person.order.as_deref()?))).collect();
+    let order = |id: &str| orders.get(id).copied().unwrap_or_default().to_owned();
     csv_of(
         &RATINGS,
         ratings.rows.iter().filter_map(|row| {
@@ -127,7 +128,7 @@ pub fn ratings_of_csv(
     }
     // Hashed for the time of reading alone; the names come back below.
     let mut gather = Gather::new(design, Pseudonyms { key: [0; 32] }, file);
-    let mut names = std::collections::BTreeMap::new();
+    let mut names = BTreeMap::new();
     for (number, cells) in &sheet.lines {
         let spot = |column| Spot { line: *number, column };
         let cell = |column: &str| sheet.cell(cells, column);
@@ -193,11 +194,12 @@ fn film_of<'c>(gather: &Gather<'_>, cell: &dyn Fn(&str) -> &'c str, line: u64) -
 fn add_people(all: &mut Ratings, text: &str, file: &str) -> Result<(), Problem> {
     let sheet = Sheet::read(text, file)?;
     sheet.need(&["participant"])?;
+    let places: BTreeMap<String, usize> =
+        all.participants.iter().enumerate().map(|(at, person)| (person.id.clone(), at)).collect();
     for (number, cells) in &sheet.lines {
         let text = |column: &str| Some(sheet.cell(cells, column).to_owned()).filter(|cell| !cell.is_empty());
-        let Some(person) = all.participants.iter_mut().find(|one| one.id == sheet.cell(cells, "participant")) else {
-            continue;
-        };
+        let place = places.get(sheet.cell(cells, "participant"));
+        let Some(person) = place.and_then(|at| all.participants.get_mut(*at)) else { continue };
         let at = (*number, cells.as_slice());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of checks")]
         let count = |column: &str| Ok(sheet.number(at, column)?.map(|count| count.min(1e6) as u32));

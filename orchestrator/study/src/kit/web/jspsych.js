@@ -28,10 +28,7 @@
   const order = data.orders.find((one) => one.name === query.get("order")) || jsPsych.randomization.sampleWithoutReplacement(data.orders, 1)[0];
   jsPsych.data.addProperties({ PROLIFIC_PID: person, order: order.name });
   const steps = [{ type: jsPsychHtmlButtonResponse, stimulus: data.consent.map(paragraphs).join("") + "<p>If you do not agree, please close this page.</p>", choices: ["I agree and take part"], data: { film: "" } }];
-  const seen = [`You will watch ${order.films.length} short films of robots that move among people, and answer questions after each. The robots look the same but may act differently, and a scene can come more than once. A film can end before the robot has reached its goal.`];
-  if (data.views.includes("above")) seen.push("From above, the robot is the blue square, and each person is a circle of another color; a white arrow shows where they look. Dark: walls and furniture. Gray: floor that nobody gets to. Brown: doors.");
-  if (data.views.includes("person")) seen.push("Some films show what a person there sees. The white side of the robot is its front.");
-  seen.push("Words in a bubble: a gesture or words of the person or robot below it.");
+  const seen = [`You will watch ${order.films.length} short films of robots that move among people. ${data.about}`, ...data.shapes.map(([, words]) => words)];
   steps.push({ type: jsPsychHtmlButtonResponse, stimulus: seen.map(paragraphs).join(""), choices: ["Continue"], data: { film: "" } });
   if (data.instructions) steps.push({ type: jsPsychHtmlButtonResponse, stimulus: paragraphs(data.instructions), choices: ["Continue"], data: { film: "" } });
   const likert = (block, items, more) => ({

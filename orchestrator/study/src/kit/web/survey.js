@@ -106,16 +106,16 @@
     if (kept.ended) { finish(); return; }
     screen("What you will see");
     if (kept.done) make("p", `Welcome back: the questions about ${kept.done} of ${kept.films.length} films are answered, and you go on with the next one.`, main, "text");
-    make("p", `You will watch ${kept.films.length} short films of robots that move among people, and answer questions after each. The robots look the same but may act differently, and a scene can come more than once. A film can end before the robot has reached its goal. Each film can be watched again before you answer.`, main, "text");
+    make("p", `You will watch ${kept.films.length} short films of robots that move among people. ${data.about} Each film can be watched again before you answer.`, main, "text");
     const key = make("ul", "", main, "key");
-    const line = (picture, words) => { const li = make("li", "", key); drawing(li, picture); make("span", words, li); };
-    if (data.views.includes("above")) {
-      line('<rect x="-14" y="-14" width="28" height="28" rx="5" fill="#0072B2"/><path d="M10 0L-6 8L-3 0L-6 -8z" fill="#fff"/>', "The robot from above; the arrow shows where it looks.");
-      line('<circle r="14" fill="#D55E00"/><path d="M11 0L3 5L3 -5z" fill="#fff"/>', "A person from above; each person has another color.");
-    }
-    if (data.views.includes("above")) line('<path d="M-20 -12h18v8h-18zM2 -12h18v8h-18z" fill="#3a3d46"/><rect x="-20" y="4" width="16" height="8" fill="#e6e8ee"/><rect x="2" y="6" width="18" height="4" fill="#b5651d"/>', "Dark: walls and furniture. Gray: floor that nobody gets to. Brown: doors.");
-    if (data.views.includes("person")) line('<rect x="-11" y="-14" width="22" height="32" rx="5" fill="#0072B2"/><rect x="-7" y="-10" width="14" height="9" rx="2" fill="#fff"/><circle cx="-3" cy="-5.500" r="1.600"/><circle cx="3" cy="-5.500" r="1.600"/>', "The robot as you would meet it: some films show what a person there sees. The white side is its front.");
-    line('<rect x="-20" y="-10" width="40" height="20" rx="4" fill="#fff4d6" stroke="#b07a00"/><text y="5" font-size="13" text-anchor="middle">wait</text>', "Words in a bubble: a gesture or words of the person or robot below it.");
+    const pictures = {
+      robot: '<rect x="-14" y="-14" width="28" height="28" rx="5" fill="#0072B2"/><path d="M10 0L-6 8L-3 0L-6 -8z" fill="#fff"/>',
+      person: '<circle r="14" fill="#D55E00"/><path d="M11 0L3 5L3 -5z" fill="#fff"/>',
+      place: '<path d="M-20 -12h18v8h-18zM2 -12h18v8h-18z" fill="#3a3d46"/><rect x="-20" y="4" width="16" height="8" fill="#e6e8ee"/><rect x="2" y="6" width="18" height="4" fill="#b5651d"/>',
+      front: '<rect x="-11" y="-14" width="22" height="32" rx="5" fill="#0072B2"/><rect x="-7" y="-10" width="14" height="9" rx="2" fill="#fff"/><circle cx="-3" cy="-5.500" r="1.600"/><circle cx="3" cy="-5.500" r="1.600"/>',
+      bubble: '<rect x="-20" y="-10" width="40" height="20" rx="4" fill="#fff4d6" stroke="#b07a00"/><text y="5" font-size="13" text-anchor="middle">wait</text>',
+    };
+    data.shapes.forEach(([kind, words]) => { const li = make("li", "", key); drawing(li, pictures[kind]); make("span", words, li); });
     if (data.instructions) paragraphs(data.instructions, main);
     const moves = make("div", "", main, "moves");
     button(kept.done ? "Go on" : "Start", moves, next, "main").id = "start";
