@@ -132,14 +132,6 @@ impl Cast {
         }
     }
 
-    /// A cast of people of whom was spoken before.
-    pub(crate) fn known(people: Vec<Person>) -> Self {
-        let members: Vec<usize> = (0..people.len()).collect();
-        let last = if members.len() == 1 { members.clone() } else { Vec::new() };
-        let set = Together { members, total: false, quote: String::new(), counted: Vec::new() };
-        Self { people, sets: vec![set], last, ..Self::default() }
-    }
-
     /// The people whom a mention means; new ones join.
     pub(crate) fn resolve(&mut self, mention: &Mention, declares: bool, quote: &str) -> Vec<usize> {
         let found = match &mention.who {

@@ -3,8 +3,6 @@
 use socrates_model::{Action, Gesture, PlaceClass, Relation};
 
 use crate::cast::Person;
-use crate::cut::sentences;
-use crate::lexicon::lexicon;
 use crate::story::Story;
 
 /// The card of the story; `None` where no card fits (the proposal is `free` then).
@@ -80,27 +78,4 @@ fn by_place(place: Option<PlaceClass>) -> Option<&'static str> {
         PlaceClass::OpenArea => "group_passing",
         PlaceClass::Corridor | PlaceClass::Exit | PlaceClass::Plain => "frontal_approach",
     })
-}
-
-/// The first word for people in the social context that says who they are.
-pub(crate) fn role_of(context: &str) -> Option<String> {
-    let lex = lexicon();
-    sentences(context)
-        .into_iter()
-        .flatten()
-        .flat_map(|stretch| stretch.words)
-        .map(|word| word.stem)
-        .find(|stem| lex.roles.get(stem).is_some_and(|role| !role.generic))
-}
-
-/// The pace that the social context suggests, m/s.
-pub(crate) fn pace_of(context: &str) -> Option<f64> {
-    let lex = lexicon();
-    let words: Vec<String> = sentences(context)
-        .into_iter()
-        .flatten()
-        .flat_map(|stretch| stretch.words)
-        .flat_map(|word| [word.text, word.stem])
-        .collect();
-    words.iter().find_map(|word| lex.pace.get(word).copied())
 }

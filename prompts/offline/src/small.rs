@@ -12,7 +12,7 @@ use std::ops::Range;
 use socrates_model::fault::{Message, Span};
 use socrates_model::statement::{Background, Became, Statement, TextKey};
 use socrates_model::{AgentId, Fault, Gesture, GroupId, HumanId, PlaceClass, Reading, Relation, Request, Trigger};
-use socrates_reader::{Act as Said, Cue, Fate, Line, Read, Reason, Step};
+use socrates_reader::{Act as Said, Cue, Fate, Line, Piece, Read, Reason, Step};
 
 use crate::aside;
 use crate::cast::Person;
@@ -24,7 +24,17 @@ use crate::understand::Understood;
 
 /// A text as the small reader reads it, and the story that it tells.
 pub(crate) fn story(text: &str) -> Story {
-    Telling { text, read: socrates_reader::read(text) }.story()
+    told(text, socrates_reader::read(text))
+}
+
+/// The story that was read of a text.
+pub(crate) fn told(text: &str, read: Read) -> Story {
+    Telling { text, read }.story()
+}
+
+/// What the text says that somebody does not do.
+pub(crate) fn denied(person: &socrates_reader::Person) -> Vec<Act> {
+    person.denied.iter().map(|said| act(*said)).collect()
 }
 
 /// A text with what was read of it.
@@ -94,6 +104,10 @@ impl Telling<'_> {
                 .or(self.read.story.place)
                 .filter(|class| matches!(class, PlaceClass::Room | PlaceClass::Elevator));
             deed::apply(&mut story.cast, who, comes(relation, grouped), &Around { place, quote, ..Around::default() });
+        }
+        if person.walks && person.relation.is_none() && person.steps.is_empty() {
+            let quote = self.quote(|line| line.person() == Some(who));
+            deed::apply(&mut story.cast, who, Act::Walk, &Around { quote, ..Around::default() });
         }
         if person.crosses {
             let quote = self.quote(|line| *line == Line::Relation(who, Relation::Crossing));
@@ -256,7 +270,7 @@ pub(crate) fn statements(request: &Request, whole: &Understood, reading: &Readin
             Fate::Read => became(text, &piece.at, whole, reading),
             Fate::Background(reason) => Became::Background(*reason),
             Fate::NotPlayed(why) => Became::NotPlayed { why: Message::new(why.as_str()) },
-            Fate::NotRead => Became::NotRead { rewording: None },
+            Fate::NotRead => Became::NotRead { rewording: rewording(&told.story, &read, piece) },
         };
         found.push((piece.at.clone(), became));
     }
@@ -279,6 +293,22 @@ pub(crate) fn statements(request: &Request, whole: &Understood, reading: &Readin
     found.extend(quoted.chain(unplayed).filter_map(|(quote, why)| Some((at(&quote)?, Became::NotPlayed { why }))));
     found.sort_by_key(|(at, _)| (at.start, at.end));
     found.into_iter().filter_map(|(at, became)| statement(request, text, &at, became)).collect()
+}
+
+/// The clause of a piece without the words that were not read, where that is read whole and the story stays the same.
+fn rewording(text: &str, read: &Read, piece: &Piece) -> Option<String> {
+    let own = || read.pieces.iter().filter(|other| other.clause.is_some() && other.clause == piece.clause);
+    let lost = |fate: &Fate| matches!(fate, Fate::NotRead | Fate::NotPlayed(_));
+    own().find(|other| other.fate == Fate::Read)?;
+    let (from, to) = (own().map(|other| other.at.start).min()?, own().map(|other| other.at.end).max()?);
+    let kept: Vec<&str> =
+        own().filter(|other| !lost(&other.fate)).filter_map(|other| text.get(other.at.clone())).collect();
+    let clause = kept.join(" ");
+    let again = format!("{}{clause}{}", text.get(..from)?, text.get(to..)?);
+    let reads = socrates_reader::read(&again);
+    let within = |other: &Piece| other.at.start < from + clause.len() && from < other.at.end;
+    let whole = !reads.pieces.iter().any(|other| within(other) && lost(&other.fate));
+    (whole && reads.story == read.story).then_some(clause)
 }
 
 /// The lines and facts whose words a piece has.

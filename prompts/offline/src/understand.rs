@@ -6,18 +6,18 @@ use socrates_model::{
     Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, ReadBy, Reading,
     Relation, Request, Rule, Trigger,
 };
+use socrates_reader::{Familiar, Reader};
 
 use crate::card::Ends;
 use crate::cast::{Person, ReadRule};
-use crate::lexicon::lexicon;
 use crate::order;
 use crate::pattern;
 use crate::statements::{Line, Unplayed, lines};
 use crate::story::{self, Story};
 use crate::task::{self, End, Task};
 use crate::{
-    again, aside, boards, chance, contra, cut, default_cast, expect, facing, form, named_way, numbered, place, sides,
-    small, spot, words,
+    again, aside, boards, chance, contra, default_cast, expect, facing, form, named_way, numbered, place, sides, small,
+    spot,
 };
 
 /// The reading with what the model has no field for.
@@ -33,6 +33,8 @@ pub(crate) struct Understood {
     pub(crate) unplayed: Vec<Unplayed>,
     /// Where the words of the rough scenario stand that some rule read, in bytes.
     pub(crate) used: Vec<std::ops::Range<usize>>,
+    /// What was read of the task.
+    pub(crate) task: Task,
     /// Sentences that speak to the program.
     pub(crate) instructions: Vec<String>,
 }
@@ -150,7 +152,7 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by
     let before = told.story.len() - told.story.trim_start().len();
     let used = story.used.iter().map(|at| at.start + before..at.end + before).collect();
     let instructions = [&told, &asked, &context].into_iter().flat_map(|told| told.instructions.clone()).collect();
-    Understood { reading, extras, by_card, lines, unplayed: story.cast.unplayed, used, instructions }
+    Understood { reading, extras, by_card, lines, unplayed: story.cast.unplayed, used, task, instructions }
 }
 
 /// A pattern by name that this map cannot hold: a fault that says what is missing.
@@ -180,22 +182,13 @@ fn language(request: &Request, reading: &mut Reading) {
     let texts =
         [("rough_scenario", request.rough_scenario.as_deref().unwrap_or_default()), ("task", request.task.as_str())];
     for (key, text) in texts {
-        let all: Vec<words::Word> =
-            cut::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
-        let letters: Vec<&words::Word> = all.iter().filter(|word| word.text.starts_with(char::is_alphabetic)).collect();
-        let lex = lexicon();
-        let known = letters
-            .iter()
-            .filter(|word| lex.known.contains(&word.stem) || lex.known.contains(&word.text) || word.stem == "robot")
-            .count();
+        let Familiar { words, known } = Reader::shipped().familiar(text);
         // English texts of a few words still have half of theirs in the tables; other languages share single words only.
-        let script = known == 0 && letters.len() < 4 && aside::language(text).is_some();
-        if script || letters.len() >= 4 && known * 10 < letters.len() * 3 || aside::foreign(text).is_some() {
+        let script = known == 0 && words < 4 && aside::language(text).is_some();
+        if script || words >= 4 && known * 10 < words * 3 || aside::foreign(text).is_some() {
             let named = aside::language(text).map_or_else(String::new, |name| format!(" (this looks like {name})"));
-            let message = format!(
-                "{known} of {} words are known{named}; the offline author reads plain English only",
-                letters.len()
-            );
+            let message =
+                format!("{known} of {words} words are known{named}; the offline author reads plain English only");
             reading.problems.push(Fault::new(FaultCode::PLang, key, message));
         }
     }
@@ -261,7 +254,7 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
 }
 
 fn people(request: &Request, story: &Story, reading: &mut Reading) {
-    let from_context = pattern::role_of(&request.social_context);
+    let from_context = Reader::shipped().scene(&request.social_context).role;
     for (i, person) in story.cast.people.iter().enumerate() {
         let number = u32::try_from(i + 1).unwrap_or(u32::MAX);
         let generic = person.role.is_empty();

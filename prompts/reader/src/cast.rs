@@ -8,8 +8,11 @@ use std::ops::Range;
 
 use socrates_model::{Gesture, Relation};
 
+use crate::lexicon::Lexicon;
+use crate::name::gender;
 use crate::noun::{Head, Noun, Pick};
 use crate::statement::{Deed, Named, Reason};
+use crate::token::{Sort, Token};
 
 /// People, by their numbers from 0.
 pub type People = Vec<usize>;
@@ -21,7 +24,9 @@ pub(crate) const ANYBODY: &[&str] =
 const SEVERAL: usize = 2;
 /// No phrase means more people than this.
 const MOST: usize = 30;
-#[derive(Default)]
+
+/// Everybody of whom was spoken so far.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Cast {
     pub(crate) roles: Vec<String>,
     pub(crate) vague: People,
@@ -74,6 +79,23 @@ pub(crate) struct Cast {
 }
 
 impl Cast {
+    /// People of whom was spoken before, by their roles; `last` are those of whom it was last. They are called by their numbers as well.
+    pub(crate) fn of(known: &[String], last: &[usize], lexicon: &Lexicon) -> Self {
+        let roles: Vec<(String, Option<bool>)> = known.iter().map(|role| head_of(role, lexicon)).collect();
+        let female = roles.iter().enumerate().filter_map(|(person, (_, female))| Some((person, (*female)?))).collect();
+        let names = (0..roles.len()).flat_map(|person| {
+            let called = |word: &&str| (format!("{word} {}", person + 1), person);
+            ["human", "person"].iter().map(called).collect::<Vec<_>>()
+        });
+        Self {
+            names: names.collect(),
+            roles: roles.into_iter().map(|(role, _)| role).collect(),
+            female,
+            last: if known.len() == 1 { vec![0] } else { last.to_vec() },
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn people(&mut self, nouns: &Named) -> People {
         let mut all = People::new();
         let mut fresh = false;
@@ -473,6 +495,16 @@ impl Cast {
             self.set.extend(people.iter().copied());
         }
         people
+    }
+}
+
+/// The word by which somebody of a role is called, and whether it is a woman's or a man's: of several words the last that is a role.
+fn head_of(role: &str, lexicon: &Lexicon) -> (String, Option<bool>) {
+    let tokens = crate::lex::lex(role, &lexicon.words);
+    let is_role = |token: &&Token| token.is(Sort::Role) || token.is(Sort::People);
+    match tokens.iter().rfind(is_role) {
+        Some(word) => (word.lemma.clone(), gender(word)),
+        None => (role.to_lowercase(), None),
     }
 }
 

@@ -112,7 +112,9 @@ impl Maker<'_> {
                 self.say(tokens, Says::Pace(clause.subject.clone(), pace.value));
             }
         }
-        self.rest(clause);
+        // What describes somebody of whom the clause says nothing more may be what they do.
+        let idle = !robot && !clause.subject.is_empty() && !self.tells_since(start);
+        self.rest(clause, idle);
         // A reason for which nobody does anything yet is one for what comes.
         let own = self.found.get(start..).unwrap_or_default();
         let does = own.iter().any(|own| matches!(own.says, Says::Do(_)));
@@ -322,7 +324,7 @@ impl Maker<'_> {
         let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
         // `from the ward to the exit`
         let route = clause.subject.is_empty()
-            && clause.acts.is_empty()
+            && clause.acts.iter().all(|act| frame(act).is_some_and(|frame| frame.plain))
             && clause.places.len() > 1
             && clause.places.iter().any(|at| at.from || at.via)
             && clause.places.iter().any(|at| at.to);

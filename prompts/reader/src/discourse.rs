@@ -13,6 +13,8 @@ use crate::statement::{Deed, Named, Reason, Says, Statement};
 /// Statements of people, and the role of everybody.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Told {
+    /// How many of them were known before the text.
+    pub(crate) known: usize,
     pub(crate) roles: Vec<String>,
     /// Those of whom is spoken in general, without a number: `people step in front of it`.
     pub(crate) vague: People,
@@ -23,9 +25,9 @@ pub(crate) struct Told {
     pub(crate) doubts: Vec<Range<usize>>,
 }
 
-/// Finds out who is meant.
-pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
-    let mut cast = Cast::default();
+/// Finds out who is meant, of those who are known and those whom the text names.
+pub(crate) fn told(statements: &[Statement<Named>], mut cast: Cast) -> Told {
+    let known = cast.roles.len();
     let mut told = Vec::new();
     for statement in statements {
         cast.begin(statement);
@@ -42,7 +44,7 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
     }
     cast.doubts.extend(cast.waiting.take());
     let Cast { roles, vague, plain, doubts, .. } = cast;
-    let told = Told { roles, vague, plain, statements: told, doubts };
+    let told = Told { known, roles, vague, plain, statements: told, doubts };
     Told { statements: doubted(&told), ..told }
 }
 
@@ -59,7 +61,7 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
     let anybody = |person: &usize| told.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str()));
     let all_anybody = (0..told.roles.len()).all(|person| anybody(&person));
     let unknown: People =
-        (0..told.roles.len()).filter(|person| !known(*person) || anybody(person) && !all_anybody).collect();
+        (told.known..told.roles.len()).filter(|person| !known(*person) || anybody(person) && !all_anybody).collect();
     let mut all = told.statements.clone();
     all.extend(opposites(told));
     if unknown.len() < told.roles.len() {
@@ -173,6 +175,11 @@ impl Cast {
                 Says::Relate(who, *relation, *side)
             }
             Says::Noted(who) => Says::Noted(self.people(who)),
+            // `it signals him to go ahead, and he walks`: as he was told.
+            Says::Walks(who) if self.asked == Some(Gesture::Proceed) && self.pending.iter().any(is_word) => {
+                let deed = self.deed(&Deed::of(who.clone(), Act::Navigate));
+                Says::Do(deed)
+            }
             Says::Walks(who) => Says::Walks(self.people(who)),
             Says::Group(who) => Says::Group(self.people(who)),
             Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
@@ -275,6 +282,13 @@ impl Cast {
                 }
             };
         }
+        // Nobody answers their own word: a pronoun in it means somebody else.
+        let own = |reason: &Reason<People>| {
+            reason.cue == Cue::Says && reason.who.as_ref().is_some_and(|speaker| *speaker == who)
+        };
+        if when.iter().any(own) {
+            self.doubts.extend(deed.who.iter().map(|noun| noun.tokens.clone()));
+        }
         let (mut act, mut says, mut whom) = (deed.act, deed.says, whom);
         let as_robot = when.iter().find_map(|reason| match reason.cue {
             Cue::Stopped => Some(Act::StandStill),
@@ -350,6 +364,11 @@ impl Cast {
             Gesture::FollowMe => Act::Follow,
         })
     }
+}
+
+/// Whether somebody waits for a word of the robot.
+fn is_word(reason: &Reason<People>) -> bool {
+    reason.cue == Cue::Says && reason.who.is_none()
 }
 
 /// The sign by which somebody is asked for an act.

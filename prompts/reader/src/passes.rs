@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::account::{Fate, Piece, Read, account};
+use crate::cast::Cast;
 use crate::chunk::{Chunk, chunks};
 use crate::clause::{Clause, Predicate};
 use crate::clause_says::statements;
@@ -31,12 +32,17 @@ pub struct Passes<'a> {
 
 impl<'a> Passes<'a> {
     pub(crate) fn by(text: &str, lexicon: &'a Lexicon) -> Self {
+        Self::of(text, Cast::default(), lexicon)
+    }
+
+    /// The same of a text about people who are known.
+    pub(crate) fn of(text: &str, known: Cast, lexicon: &'a Lexicon) -> Self {
         let tokens = crate::lex::lex(text, &lexicon.words);
         let scene = normalize(tokens.clone(), lexicon);
         let chunks = chunks(&scene.tokens, lexicon);
         let clauses = clauses(&chunks, lexicon);
         let statements = statements(&clauses, lexicon);
-        let told = told(&statements);
+        let told = told(&statements, known);
         let telling = story(&told);
         Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, telling }
     }

@@ -173,6 +173,12 @@ impl Reader<'_> {
         words.iter().any(|word| word.is(Sort::Looks) && word.spelled.ends_with("er"))
     }
 
+    /// How many `some people` are.
+    fn few(&self, noun: &Noun) -> Option<u32> {
+        let some = self.tokens.get(noun.tokens.start).is_some_and(|first| first.lemma == "some");
+        (some && noun.several && noun.pick == Pick::Some).then_some(FEW)
+    }
+
     /// The role, with the words before it.
     fn head(&mut self, noun: &mut Noun, told: bool) -> bool {
         let start = self.at;
@@ -201,6 +207,7 @@ impl Reader<'_> {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several =
                     token.bent == Bent::S || token.lemma == "people" || noun.count.is_some_and(|count| count > 1);
+                noun.count = noun.count.or_else(|| self.few(noun));
                 noun.pace_mps = pace;
                 noun.modifiers = self
                     .tokens

@@ -61,6 +61,10 @@ pub struct Person {
     pub group: Option<usize>,
     /// What they do, in the order of the text.
     pub steps: Vec<Step>,
+    /// What the text says that they do not do.
+    pub denied: Vec<Act>,
+    /// Whether it says that they walk, and not how.
+    pub walks: bool,
 }
 
 /// Everything that a text states.
@@ -128,8 +132,12 @@ pub(crate) fn story(told: &Told) -> Telling {
     telling
         .lost
         .extend(lost.into_iter().filter(|(_, tokens)| !others(tokens)).map(|(number, _)| number).collect::<Vec<_>>());
+    // Whoever makes the very sign that they wait for was not made out.
+    let echoes: Vec<Range<usize>> =
+        telling.lines.iter().filter(|(line, _)| telling.story.echoes(line)).map(|(_, at)| at.clone()).collect();
+    telling.unplaced.extend(echoes);
     let unplaced = telling.story.unplaced();
-    for person in unplaced {
+    for person in unplaced.into_iter().filter(|person| *person >= told.known) {
         let line = telling.lines.iter().find(|(line, _)| line.person() == Some(person));
         telling.unplaced.extend(line.map(|(_, tokens)| tokens.clone()));
     }
@@ -216,9 +224,11 @@ impl Teller {
             Says::Walks(who) if who.iter().any(|person| steps.get(*person).is_some_and(|steps| *steps > 0)) => {
                 self.unsaid.insert(number);
             }
-            Says::Introduce(who) | Says::Noted(who) | Says::Walks(who) => {
-                lines.extend(who.iter().map(|person| Line::Person(*person)))
+            Says::Walks(who) => {
+                story.each(who, |person| person.walks = true);
+                lines.extend(who.iter().map(|person| Line::Person(*person)));
             }
+            Says::Introduce(who) | Says::Noted(who) => lines.extend(who.iter().map(|person| Line::Person(*person))),
             Says::Group(_)
             | Says::RobotSays(None, _)
             | Says::Then(..)
@@ -292,7 +302,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             let vague = others && told.vague.contains(&person);
             let less = somebody && anybody(person) && !own.whole;
             let heading = others && told.plain.contains(&person) && !own.told;
-            (own.told || own.named) && !vague && !less && !heading
+            person < told.known || (own.told || own.named) && !vague && !less && !heading
         })
         .collect();
     let unsure: Vec<usize> = (0..sure.len()).filter(|person| sure.get(*person) == Some(&false)).collect();
@@ -322,6 +332,17 @@ impl Story {
             | Line::RobotFirst(_)
             | Line::RobotSays(_) => true,
         }
+    }
+
+    /// Whether it is a step by which somebody makes a sign as soon as it is made.
+    fn echoes(&self, line: &Line) -> bool {
+        let Line::Step(person, number) = line else { return false };
+        let step = self.people.get(*person).and_then(|person| person.steps.get(*number));
+        let same = |step: &Step, sign: Gesture| {
+            sign != Gesture::Acknowledged
+                && step.when.iter().any(|reason| reason.cue == Cue::Says && reason.sign == Some(sign))
+        };
+        step.is_some_and(|step| step.says.is_some_and(|sign| same(step, sign)))
     }
 
     fn relate(&mut self, who: &[usize], relation: Option<Relation>, side: Option<Side>) {
@@ -395,10 +416,11 @@ impl Story {
     /// others who have a role. Mostly something that tells of them was not made out.
     fn unplaced(&self) -> People {
         let placed = |person: &Person| {
-            let comes = |step: &Step| matches!(step.act, Act::Follow | Act::Approach | Act::RunAway);
+            // Whoever follows is behind by that; whoever comes up or runs away may come from anywhere.
+            let follows = |step: &Step| step.act == Act::Follow;
             let group = |other: &&Person| person.group.is_some() && other.group == person.group;
             person.relation.is_some()
-                || person.steps.iter().any(comes)
+                || person.steps.iter().any(follows)
                 || self.people.iter().filter(group).any(|other| other.relation.is_some())
         };
         let anybody = |person: &Person| ANYBODY.contains(&person.role.as_str());
@@ -460,6 +482,7 @@ impl Story {
             self.robot_sign(*gesture);
         }
         if deed.not {
+            self.each(&deed.who, |person| person.denied.push(deed.act));
             return by_robot;
         }
         let whom = deed.whom.as_ref().and_then(|whom| whom.first().copied());
@@ -478,6 +501,7 @@ impl Story {
                 && step.when.is_empty()
                 && person.relation.is_none()
                 && person.steps.is_empty()
+                && !person.walks
             {
                 person.relation = Some(Relation::Static);
             }

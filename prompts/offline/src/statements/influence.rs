@@ -123,6 +123,28 @@ impl Text<'_> {
         found
     }
 
+    /// The same of a text of which it is known which words something was made of. Not `surely`: they are read where their clause
+    /// changes something.
+    pub(super) fn by_clause(&self, surely: bool) -> Influence {
+        let clauses = self.tokens.last().map_or(0, |last| last.clause + 1);
+        let mut found = Influence { lines: vec![Vec::new(); clauses], read: vec![false; self.tokens.len()] };
+        for (clause, lines) in found.lines.iter_mut().enumerate() {
+            let used: Vec<usize> = self.of_clause(clause).into_iter().filter(|place| self.is_used(*place)).collect();
+            if used.is_empty() {
+                continue;
+            }
+            let other = self.without(&|n| used.contains(&n));
+            let lost = |n: &usize| self.whole.get(*n).is_some_and(|line| !other.contains(line));
+            *lines = (0..self.whole.len()).filter(lost).collect();
+            for place in used.into_iter().filter(|_| surely || other != self.whole) {
+                if let Some(read) = found.read.get_mut(place) {
+                    *read = true;
+                }
+            }
+        }
+        found
+    }
+
     /// `two or three people`: both ends of a range are read where one is.
     fn ranges(&self, found: &mut Influence) {
         let joins = |place: usize| {

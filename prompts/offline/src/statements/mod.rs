@@ -25,6 +25,7 @@ use socrates_model::form::Form;
 use socrates_model::request::Expect;
 use socrates_model::statement::{Background, Became, Statement, TextKey, covers};
 use socrates_model::{Fault, Location, ReadBy, Reading, Request};
+use socrates_reader::Reader;
 
 use crate::understand::{Understood, understood};
 use background::Around;
@@ -113,11 +114,20 @@ impl<'a> Account<'a> {
     ) -> Self {
         let text = key.text_of(request);
         let tokens = text::tokens(text);
-        let kinds = words::kinds(&tokens, location);
         let read = |text: &str| read_again(request, location, (key, reading.by), text);
-        let used = tokens.iter().map(|token| key == TextKey::RoughScenario && touched(token, &whole.used)).collect();
+        let used = match key {
+            TextKey::RoughScenario => whole.used.clone(),
+            TextKey::Task => whole.task.used.clone(),
+            TextKey::SocialContext => Reader::shipped().scene(text).used,
+        };
+        let kinds = match key {
+            TextKey::RoughScenario => words::kinds(&tokens, location),
+            TextKey::Task | TextKey::SocialContext => words::plain(&tokens, &whole.task.open, key),
+        };
+        let used = tokens.iter().map(|token| touched(token, &used)).collect();
         let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
-        let influence = again.influence();
+        let influence =
+            if key == TextKey::RoughScenario { again.influence() } else { again.by_clause(key == TextKey::Task) };
         Self { request, location, whole, reading, key, text, tokens, kinds, influence }
     }
 
@@ -222,8 +232,10 @@ impl<'a> Account<'a> {
                     run.push(*place);
                 }
                 Some(_) | None => {
-                    let mut run =
-                        if runs.is_empty() && own != Fate::Read { std::mem::take(&mut joins) } else { Vec::new() };
+                    // Of a task the name alone is not played: what joins it to the robot's way is its errand.
+                    let leads =
+                        self.key == TextKey::RoughScenario && own != Fate::Read || matches!(own, Fate::Background(_));
+                    let mut run = if runs.is_empty() && leads { std::mem::take(&mut joins) } else { Vec::new() };
                     joins.clear();
                     run.push(*place);
                     runs.push((own, run));

@@ -1,6 +1,10 @@
 //! What kind of word it is: whether it says something, and whether it can be background.
 
+use std::ops::Range;
+
 use socrates_model::Location;
+use socrates_model::statement::TextKey;
+use socrates_reader::Reader;
 
 use super::background::STUDIES;
 use super::text::Token;
@@ -115,6 +119,19 @@ fn among(table: &str, word: &str) -> bool {
 /// The kind of each word.
 pub(super) fn kinds(tokens: &[Token], location: &Location) -> Vec<Kind> {
     (0..tokens.len()).map(|place| kind(tokens, place, location)).collect()
+}
+
+/// The kinds of the words of a text that tells of nobody's deeds: a task, of which some words may deny something, or a context.
+pub(super) fn plain(tokens: &[Token], denied: &[Range<usize>], key: TextKey) -> Vec<Kind> {
+    let denies = |token: &Token| {
+        key == TextKey::Task && denied.iter().any(|at| at.start < token.at.end && token.at.start < at.end)
+    };
+    let kind = |token: &Token| match Reader::shipped().says_nothing(&token.lower) {
+        _ if denies(token) => Kind::Denial,
+        true => Kind::Connective,
+        false => Kind::Other,
+    };
+    tokens.iter().map(kind).collect()
 }
 
 fn kind(tokens: &[Token], place: usize, location: &Location) -> Kind {
