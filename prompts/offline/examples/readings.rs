@@ -8,7 +8,7 @@
 mod corpora;
 
 use corpora::{asked, each, facts, hash};
-use socrates_model::{Location, ReadBy, Reading, Request};
+use socrates_model::{Location, Reading, Request};
 
 fn main() {
     each(|text, _, (request, location), _| line(&format!("{:016x}", hash(text)), request, location));
@@ -25,7 +25,7 @@ fn main() {
 }
 
 fn line(name: &str, request: &Request, location: &Location) {
-    let reading = socrates_offline::read_by(request, location, ReadBy::Small);
+    let reading = socrates_offline::read(request, location);
     let facts: Vec<String> = facts(&reading).into_iter().collect();
     let kinds: Vec<String> = reading.facts.iter().map(|fact| format!("{:?} {:?}", fact.kind, fact.quote)).collect();
     println!("{name}\n  {}\n  {}\n  {:?}\n  {}", facts.join("; "), kinds.join("; "), reading.pattern, rest(&reading));

@@ -17,7 +17,7 @@ pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, loca
     reading.notes.push(format!("the text names no people; the pattern `{}` says who is there", card.id));
     let (humans, extras) = people(card, &mut Draw::new(0, "reading"), request);
     reading.humans = humans;
-    if story.cast.groups.is_empty() && card.roles.iter().any(|role| role.group) && reading.humans.len() > 1 {
+    if story.groups.is_empty() && card.roles.iter().any(|role| role.group) && reading.humans.len() > 1 {
         reading.notes.push("they form a group".to_owned());
     }
     extras

@@ -10,15 +10,12 @@ use socrates_model::{
 };
 use socrates_reader::{Fate, Read};
 
-use crate::cast::ReadRule;
-use crate::deed::manner;
 use crate::edit::Desk;
 use crate::edit_paths;
 use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;
-use crate::lexicon::Act;
-use crate::story::Story;
-use crate::{place, prose, small};
+use crate::story::{ReadRule, Story};
+use crate::{manner, place, prose, told};
 
 /// Desired speed of somebody who has none of its own, m/s.
 const USUAL_MPS: f64 = 1.2;
@@ -28,12 +25,8 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     let old = crowd.len();
     let said = crowd.read(wish);
     let unread = unread(&said, &wish.quote);
-    let denied: Vec<Vec<Act>> = said.story.people.iter().map(small::denied).collect();
-    let mut read = small::told(&wish.quote, said);
-    for (person, denied) in read.cast.people.iter_mut().zip(denied) {
-        person.never.extend(denied.into_iter().map(|act| (act, wish.quote.clone())));
-    }
-    if read.cast.people.len() > old && !wish.adds {
+    let mut read = told::told(&wish.quote, &said);
+    if read.people.len() > old && !wish.adds {
         return desk.refuse(&wish.quote, "does not say which of those who are there is meant");
     }
     for fault in std::mem::take(&mut read.problems) {
@@ -46,7 +39,7 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     for who in 0..old {
         did |= changed(desk, who, &read, wish);
     }
-    for who in old..read.cast.people.len() {
+    for who in old..read.people.len() {
         did |= joins(desk, who, &read, wish);
     }
     for (gesture, _) in &read.robot_says {
@@ -62,8 +55,7 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         }
         did = true;
     }
-    let new: Vec<(GroupId, Vec<usize>)> =
-        read.cast.groups.iter().map(|(id, members, _)| (*id, members.clone())).collect();
+    let new: Vec<(GroupId, Vec<usize>)> = read.groups.iter().map(|group| (group.id, group.members.clone())).collect();
     for (_, members) in new {
         did |= group(desk, &members);
     }
@@ -86,12 +78,12 @@ fn unread<'a>(said: &Read, text: &'a str) -> Vec<&'a str> {
 
 /// What the edit says of somebody who is there already.
 fn changed(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
-    let (Some(said), Some(human)) = (read.cast.people.get(who), desk.draft.proposal.humans.get(who).cloned()) else {
+    let (Some(said), Some(human)) = (read.people.get(who), desk.draft.proposal.humans.get(who).cloned()) else {
         return false;
     };
     let mut new = human.clone();
     for (act, _) in &said.never {
-        let words = prose_of(*act);
+        let words = manner::actions(*act);
         new.rules.retain(|rule| !words.iter().any(|other| same_act(&rule.act, other)));
     }
     for rule in &said.rules {
@@ -125,13 +117,6 @@ fn changed(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
     let text = prose::behavior(&new.role, new.relation, place, new.start, &new.rules, new.group.is_some());
     desk.done.push(format!("{id}: {text}"));
     true
-}
-
-/// The actions that an act of the text stands for: of somebody who is there, `stands` and `stays` are `stops`.
-fn prose_of(act: Act) -> Vec<Action> {
-    let still = matches!(act, Act::Stand | Act::Stay).then_some(Action::StandStill);
-    let also = (act == Act::Follow).then_some(Action::FollowHuman(HumanId::new(1)));
-    still.into_iter().chain(manner(act).map(|(action, ..)| action)).chain(also).collect()
 }
 
 pub(crate) fn same_act(a: &Action, b: &Action) -> bool {
@@ -169,7 +154,7 @@ fn put(rules: &mut Vec<Rule>, read: &ReadRule) {
 
 /// Somebody new.
 fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
-    let Some(said) = read.cast.people.get(who) else { return false };
+    let Some(said) = read.people.get(who) else { return false };
     let number = u32::try_from(desk.draft.proposal.humans.len() + 1).unwrap_or(u32::MAX);
     if number > socrates_model::request::MAX_HUMANS {
         desk.refuse(&wish.quote, &format!("asks for more than {} humans", socrates_model::request::MAX_HUMANS));

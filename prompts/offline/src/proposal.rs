@@ -13,7 +13,7 @@ use socrates_reader::Reader;
 
 use crate::card::{Card, card};
 use crate::draw::Draw;
-use crate::finish::CIRCLE_M;
+use crate::settle::CIRCLE_M;
 use crate::statements::unread;
 use crate::understand::{Extra, understand};
 use crate::{NAME, chance, default_cast, events, facing, named_way, noticing, place, prose, sides, solve};
@@ -36,7 +36,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         let (people, extras) = found.map(|card| default_cast::people(card, &mut draw, request)).unwrap_or_default();
         (people, extras, true)
     } else {
-        let understood = understand(request, location, reading.by);
+        let understood = understand(request, location);
         let extras = understood.extras;
         let extras =
             if extras.len() == reading.humans.len() { extras } else { vec![Extra::default(); reading.humans.len()] };

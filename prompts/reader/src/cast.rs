@@ -22,8 +22,8 @@ pub(crate) const ANYBODY: &[&str] =
     &["person", "people", "human", "pedestrian", "individual", "participant", "actor", "agent", "somebody"];
 /// How many several people are of whom no number is said.
 const SEVERAL: usize = 2;
-/// No phrase means more people than this.
-const MOST: usize = 30;
+/// No phrase means more people than this, which is one more than a scenario may have.
+const MOST: usize = 41;
 
 /// Everybody of whom was spoken so far.
 #[derive(Debug, Clone, Default)]
@@ -31,6 +31,8 @@ pub(crate) struct Cast {
     pub(crate) roles: Vec<String>,
     pub(crate) vague: People,
     pub(crate) plain: People,
+    /// Those of whom is told what they do, how fast, or with whom.
+    pub(crate) active: People,
     /// People who were named last.
     pub(crate) last: People,
     /// People who were named before them.
@@ -68,6 +70,8 @@ pub(crate) struct Cast {
     pub(crate) related: Option<Relation>,
     /// How everybody stands to it.
     pub(crate) relations: BTreeMap<usize, Relation>,
+    /// Those who were told last to come somehow, and those before them.
+    pub(crate) met: (People, People),
     /// Of whom a pronoun is not said: those who do it.
     pub(crate) excluded: People,
     /// What was said as a condition, and for which nobody has waited yet, by tokens.
@@ -357,6 +361,10 @@ impl Cast {
             }
             return named;
         }
+        // `A few people are in the elevator. Two people leave it.`: two of them.
+        if anybody && noun.count.is_some() && self.is_idle_set() && count < self.set.len() {
+            return self.picks(noun, &self.set.clone()).unwrap_or_default();
+        }
         let known: People = match () {
             () if anybody && noun.known_by.is_some() => {
                 let known = |person: &usize| self.relations.get(person).copied() == noun.known_by;
@@ -414,6 +422,12 @@ impl Cast {
             (None, Pick::None) => People::new(),
             (None, _) => self.new_people(noun, role),
         }
+    }
+
+    /// Whether those who were named together are anybody, and nothing is told of them yet but that they are there.
+    fn is_idle_set(&self) -> bool {
+        let idle = |person: &usize| !self.active.contains(person) && !self.relations.contains_key(person);
+        !self.set.is_empty() && self.picked.is_empty() && self.anybody(&self.set) && self.set.iter().all(idle)
     }
 
     /// Somebody by name, who may have a role beside it.

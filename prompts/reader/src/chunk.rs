@@ -128,7 +128,10 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
         && token.is(Sort::Verb)
         && before
             .is_some_and(|before| !before.is(Sort::Definite) && !before.is(Sort::At) && !before.is_mark(Mark::Stop));
-    let place = place(tokens, at, lexicon).filter(|(_, end)| {
+    // `a few people exit`
+    let people = |before: &Token| before.is(Sort::People) || before.is(Sort::Role) && before.bent == Bent::S;
+    let does = token.bent == Bent::Base && token.is(Sort::Verb) && before.is_some_and(people);
+    let place = place(tokens, at, lexicon).filter(|(_, end)| *end > at + 1 || !does).filter(|(_, end)| {
         let more = tokens.get(at + 1).is_some_and(|next| next.spelled.len() > 1 && next.number().is_none());
         !acts || *end > at + 1 && more
     });

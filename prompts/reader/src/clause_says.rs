@@ -139,8 +139,7 @@ impl Maker<'_> {
 
     /// A condition that is no reason: `while the other walks on` is a clause of its own.
     pub(crate) fn beside(&mut self, condition: &Condition) {
-        let own = !condition.clause.subject.is_empty() && !condition.clause.acts.is_empty();
-        if matches!(condition.tie, Tie::While | Tie::When) && own {
+        if matches!(condition.tie, Tie::While | Tie::When | Tie::After) && condition.tells_of_people() {
             self.clause(&condition.clause);
         } else {
             self.say(condition.clause.tokens.clone(), Says::NotRead);
@@ -199,12 +198,29 @@ impl Maker<'_> {
     pub(crate) fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
         let tokens = act.tokens.clone();
         let waits = !whole.when.is_empty() && frame.act.is_some();
+        // A side that is ruled out is none.
+        if act.not && frame.side.is_some() {
+            return self.say(tokens, Says::NotRead);
+        }
         let relation = frame.relate.filter(|_| !act.not && !waits);
         if relation.is_some() || frame.side.is_some() {
             self.say(tokens.clone(), Says::Relate(who.clone(), relation, frame.side));
         }
+        // `First a nurse crosses, then a doctor crosses.`
+        let comes = |relation: Relation| !relation.stands() && relation != Relation::Staying;
+        let after = |condition: &Condition| condition.tie == Tie::After && condition.tells_of_people();
+        let then = whole.clause.join == Join::Then && whole.clause.own || whole.clause.conditions.iter().any(after);
+        if then && relation.is_some_and(comes) {
+            self.say(tokens.clone(), Says::After(None, who.clone()));
+        }
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
+        }
+        if frame.robot_first && relation.is_some() {
+            self.say(tokens.clone(), Says::RobotFirst(None));
+        }
+        if frame.queue {
+            self.say(tokens.clone(), Says::Queue(who.clone()));
         }
         // Whoever crosses after some time, or once they may, sets off then.
         let sets_off =

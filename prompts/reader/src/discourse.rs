@@ -83,6 +83,8 @@ fn people_of(says: &Says<People>) -> &[usize] {
         | Says::Walks(who)
         | Says::Relate(who, ..)
         | Says::Group(who)
+        | Says::After(_, who)
+        | Says::Queue(who)
         | Says::Pace(who, _) => who,
         Says::Do(deed) => &deed.who,
         Says::RobotSays(..)
@@ -172,6 +174,9 @@ impl Cast {
                 if let Some(relation) = relation {
                     self.relations.extend(who.iter().map(|person| (*person, *relation)));
                 }
+                if relation.is_some_and(|relation| !relation.stands()) && self.met.1 != who {
+                    self.met = (std::mem::take(&mut self.met.1), who.clone());
+                }
                 Says::Relate(who, *relation, *side)
             }
             Says::Noted(who) => Says::Noted(self.people(who)),
@@ -181,8 +186,9 @@ impl Cast {
                 Says::Do(deed)
             }
             Says::Walks(who) => Says::Walks(self.people(who)),
-            Says::Group(who) => Says::Group(self.people(who)),
-            Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
+            Says::Group(who) => Says::Group(self.active(who)),
+            Says::Queue(who) => Says::Queue(self.people(who)),
+            Says::Pace(who, mps) => Says::Pace(self.active(who), *mps),
             // `a second one does so`: stands to the robot's way as the first does.
             Says::Do(deed)
                 if deed.obeys
@@ -222,6 +228,11 @@ impl Cast {
             }
             Says::From(who, class) => Says::From(self.people(who), *class),
             Says::RobotFirst(_) => Says::RobotFirst(Some(self.last.clone())),
+            Says::After(_, who) => {
+                let who = self.people(who);
+                let first = Some(self.met.0.clone()).filter(|first| !first.iter().any(|one| who.contains(one)));
+                Says::After(first, who)
+            }
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,
             Says::GoalThere => Says::GoalThere,
@@ -233,6 +244,13 @@ impl Cast {
             Says::Goes => Says::Goes,
             Says::NotRead => Says::NotRead,
         })
+    }
+
+    /// People of whom something is told.
+    fn active(&mut self, who: &Named) -> People {
+        let who = self.people(who);
+        self.active.extend(&who);
+        who
     }
 
     pub(crate) fn reason(&mut self, reason: &Reason<Named>) -> Reason<People> {
@@ -256,7 +274,7 @@ impl Cast {
     }
 
     pub(crate) fn deed(&mut self, deed: &Deed<Named>) -> Deed<People> {
-        let who = self.people(&deed.who);
+        let who = self.active(&deed.who);
         let whom = deed.whom.as_ref().map(|whom| {
             let (last, before) = (self.last.clone(), self.before.clone());
             self.excluded.clone_from(&who);

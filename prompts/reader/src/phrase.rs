@@ -7,6 +7,8 @@ use crate::token::{Bent, Kind, Sort, Token};
 
 /// How many a group is of whom no number is said.
 const FEW: u32 = 3;
+/// As many people as no scenario may have.
+const MANY: u32 = 41;
 /// Words that may stand between an article and its noun.
 const MODIFIERS: usize = 5;
 
@@ -131,7 +133,11 @@ impl Reader<'_> {
     }
 
     pub(crate) fn count(&self) -> Option<u32> {
-        self.peek().and_then(|token| self.number_of(token))
+        let token = self.peek()?;
+        // `10000 people`: more than there can be, and said so.
+        let people = self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::People) || next.is(Sort::Role));
+        let many = token.number().filter(|number| people && number.fract().abs() < f64::EPSILON && *number > 0.0);
+        self.number_of(token).or_else(|| many.map(|_| MANY))
     }
 
     pub(crate) fn number_of(&self, token: &Token) -> Option<u32> {

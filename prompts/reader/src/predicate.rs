@@ -47,7 +47,10 @@ impl Parser<'_> {
         // `10 s A halts`: when, where it stands before whoever does it and no word says for how long.
         let alone = clause.is_bare() && !clause.own && !before.is_some_and(|before| before.is == Is::Word);
         let fronts = alone && self.ahead(1).and_then(Chunk::noun).is_some_and(Noun::may_be_person);
-        let after = before.is_some_and(|before| before.word(Sort::After)) || next.is_some() || fronts;
+        // `after a few seconds`
+        let article = before.is_some_and(|before| before.word(Sort::Indefinite));
+        let first = if article { self.at.checked_sub(2).and_then(|at| self.chunks.get(at)) } else { before };
+        let after = first.is_some_and(|first| first.word(Sort::After)) || next.is_some() || fronts;
         let measure = self.measure(amount, self.at);
         match amount {
             Amount::Distance(_) => clause.within_m = Some(measure),

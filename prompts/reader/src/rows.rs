@@ -109,6 +109,8 @@ pub(crate) struct Frame {
     pub(crate) denied: Option<Act>,
     /// Whether those of whom it is said are a group.
     pub(crate) group: bool,
+    /// Whether they stand in it one behind the other.
+    pub(crate) queue: bool,
     /// What it is as a reason, said of a person.
     pub(crate) cue: Option<Cue>,
     /// What it is as a reason, said of the robot.

@@ -59,6 +59,8 @@ pub struct Person {
     pub pace_mps: Option<f64>,
     /// Number of their group, from 1.
     pub group: Option<usize>,
+    /// Whether they stand in it one behind the other.
+    pub queues: bool,
     /// What they do, in the order of the text.
     pub steps: Vec<Step>,
     /// What the text says that they do not do.
@@ -72,6 +74,8 @@ pub struct Person {
 pub struct Story {
     /// Everybody, in the order in which they are named.
     pub people: Vec<Person>,
+    /// Whether the text says that nobody is there, and names nobody.
+    pub nobody: bool,
     /// Where people meet the robot.
     pub place: Option<PlaceClass>,
     /// Where the robot's way begins.
@@ -82,6 +86,8 @@ pub struct Story {
     pub robot_via: Vec<PlaceClass>,
     /// Those before whom the robot is there.
     pub robot_first: People,
+    /// Those of whom the first comes before the second.
+    pub order: Vec<(usize, usize)>,
     /// Signs that the robot makes.
     pub robot_says: Vec<Gesture>,
 }
@@ -180,6 +186,7 @@ impl Teller {
                 story.each(who, |person| person.group = Some(group));
                 lines.extend(who.iter().map(|person| Line::Group(*person)));
             }
+            Says::Queue(who) => story.each(who, |person| person.queues = true),
             Says::Pace(who, mps) => {
                 story.each(who, |person| person.pace_mps = Some(*mps));
                 lines.extend(who.iter().map(|person| Line::Pace(*person)));
@@ -205,6 +212,13 @@ impl Teller {
                 let new: People = who.filter(|person| !story.robot_first.contains(person)).collect();
                 lines.extend(new.iter().map(|person| Line::RobotFirst(*person)));
                 story.robot_first.extend(new);
+            }
+            Says::After(first, then) => {
+                let pairs = first.iter().flatten().flat_map(|first| then.iter().map(move |then| (*first, *then)));
+                for (first, then) in pairs.filter(|pair| !story.order.contains(pair)).collect::<Vec<_>>() {
+                    story.order.push((first, then));
+                    lines.push(Line::Before(first, then));
+                }
             }
             Says::There => self.there = true,
             Says::GoalThere => self.goal_there = true,
@@ -270,6 +284,8 @@ fn unsure(told: &Told) -> Vec<usize> {
             Says::RobotSays(..)
             | Says::Then(..)
             | Says::RobotFirst(_)
+            | Says::After(..)
+            | Says::Queue(_)
             | Says::From(..)
             | Says::Happens(..)
             | Says::RobotVia(_)
@@ -319,6 +335,8 @@ impl Story {
                 own == Some(*relation)
                     || own.is_some() && *relation == Relation::Static
                     || crosses && *relation == Relation::Crossing
+                    // Of those who come out one who stays was inside with them.
+                    || own == Some(Relation::Staying) && *relation == Relation::Leaving
             }
             Line::RobotStart(class) => self.robot_start == Some(*class),
             Line::RobotGoal(class) => self.robot_goal == Some(*class),
@@ -330,6 +348,7 @@ impl Story {
             | Line::Place(_)
             | Line::RobotVia(_)
             | Line::RobotFirst(_)
+            | Line::Before(..)
             | Line::RobotSays(_) => true,
         }
     }
@@ -346,6 +365,9 @@ impl Story {
     }
 
     fn relate(&mut self, who: &[usize], relation: Option<Relation>, side: Option<Side>) {
+        // `Three get out; one of them stays inside.`
+        let leaves = |person: &Person| person.relation == Some(Relation::Leaving);
+        let rest_leaves = self.people.iter().enumerate().any(|(other, person)| leaves(person) && !who.contains(&other));
         self.each(who, |person| {
             person.side = side.or(person.side);
             let Some(relation) = relation else { return };
@@ -357,7 +379,8 @@ impl Story {
             if both.contains(&person.relation) && both.contains(&Some(relation)) && person.relation != Some(relation) {
                 (person.relation, person.crosses) = (Some(Relation::Leaving), true);
             }
-            if stands || person.relation == Some(Relation::Staying) && relation == Relation::Leaving {
+            let stays = leaves(person) && relation == Relation::Staying && rest_leaves;
+            if stands || stays || person.relation == Some(Relation::Staying) && relation == Relation::Leaving {
                 person.relation = Some(relation);
             }
         });
@@ -443,6 +466,8 @@ impl Story {
             !out.contains(&(number - 1))
         });
         self.robot_first = self.robot_first.iter().filter(|person| !out.contains(person)).copied().map(anew).collect();
+        self.order.retain(|(first, then)| !out.contains(first) && !out.contains(then));
+        self.order.iter_mut().for_each(|pair| *pair = (anew(pair.0), anew(pair.1)));
         for step in self.people.iter_mut().flat_map(|person| &mut person.steps) {
             step.whom = step.whom.map(anew);
             for reason in step.when.iter_mut().chain(&mut step.until) {

@@ -141,7 +141,7 @@ impl Maker<'_> {
         let clause = &condition.clause;
         let none = Reason { who: None, cue: Cue::Near, sign: None, amount: clause.within_m.map(|m| m.value) };
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
-        let own = clause.subject.is_empty() || clause.subject == subject;
+        let own = clause.subject.is_empty() || clause.subject == subject || !clause.own;
         let mut tokens: Vec<Range<usize>> =
             clause.subject.iter().chain(&clause.agent).map(|noun| noun.tokens.clone()).collect();
         tokens.extend(clause.within_m.map(|m| m.from..m.to));
