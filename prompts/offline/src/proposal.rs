@@ -9,13 +9,14 @@ use socrates_model::{
     PlaceClass, Predicate, Proposal, Reading, Relation, Request, RobotProposal, Rule, Trigger,
 };
 use socrates_prompts::Question;
+use socrates_reader::Reader;
 
 use crate::card::{Card, card};
 use crate::draw::Draw;
-use crate::finish::CIRCLE_M;
+use crate::settle::CIRCLE_M;
 use crate::statements::unread;
 use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, facing, named_way, noticing, pattern, place, prose, sides, solve};
+use crate::{NAME, chance, default_cast, events, facing, named_way, noticing, place, prose, sides, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -35,7 +36,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         let (people, extras) = found.map(|card| default_cast::people(card, &mut draw, request)).unwrap_or_default();
         (people, extras, true)
     } else {
-        let understood = understand(request, location, reading.by);
+        let understood = understand(request, location);
         let extras = understood.extras;
         let extras =
             if extras.len() == reading.humans.len() { extras } else { vec![Extra::default(); reading.humans.len()] };
@@ -196,7 +197,9 @@ fn proposed(
         | Relation::Staying
         | Relation::Abreast
         | Relation::Aside => extra.speed_mps.or_else(|| {
-            pattern::pace_of(&request.social_context)
+            Reader::shipped()
+                .scene(&request.social_context)
+                .pace_mps
                 .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
         }),
     };

@@ -187,6 +187,13 @@ fn corpora() -> Vec<(bool, Vec<Case>)> {
 }
 
 fn example_line(reader: &Reader, example: Example<'_>) {
+    if example.file == "edits" {
+        let asks = reader.wishes(example.text).first().map_or("nothing", |wish| wish.edit.name());
+        if (asks == example.gives) != example.does {
+            println!("edits {}: “{}” asks for {asks}", example.row, example.text);
+        }
+        return;
+    }
     let story = reader.read(example.text).story.to_string();
     let by_text = matches!(example.file, "rewrites" | "scopes");
     let holds = if by_text {
@@ -304,9 +311,10 @@ fn main() {
     let value = |flag: &str| words.iter().position(|word| word == flag).and_then(|at| words.get(at + 1)).cloned();
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let file = |name: &str| std::fs::read_to_string(data.join(name)).unwrap_or_default();
-    let texts = ["words", "frames", "places", "signs", "rewrites", "scopes"].map(|name| file(&format!("{name}.toml")));
-    let [words_file, frames, places, signs, rewrites, scopes] = &texts;
-    let files = Files { words: words_file, frames, places, signs, rewrites, scopes };
+    let texts = ["words", "frames", "places", "signs", "rewrites", "scopes", "errands", "edits"]
+        .map(|name| file(&format!("{name}.toml")));
+    let [words_file, frames, places, signs, rewrites, scopes, errands, edits] = &texts;
+    let files = Files { words: words_file, frames, places, signs, rewrites, scopes, errands, edits };
     let reader = match Reader::of(files) {
         Ok(reader) => reader,
         Err(fault) => {

@@ -116,6 +116,7 @@ impl Fate {
             }
             Says::From(..) => (Self::Read, 3),
             Says::NotRead | Says::RobotSays(None, _) => (Self::NotRead, 3),
+            Says::After(None, _) => (Self::Background(Background::Comment), 0),
             Says::NotPlayed(why) => (Self::NotPlayed(why.clone()), 2),
             Says::Background(reason) => (Self::Background(*reason), 0),
             Says::Introduce(_)
@@ -128,6 +129,8 @@ impl Fate {
             | Says::RobotSays(Some(_), _)
             | Says::Then(..)
             | Says::RobotFirst(_)
+            | Says::After(Some(_), _)
+            | Says::Queue(_)
             | Says::Goes
             | Says::Happens(..)
             | Says::There

@@ -112,7 +112,9 @@ impl Maker<'_> {
                 self.say(tokens, Says::Pace(clause.subject.clone(), pace.value));
             }
         }
-        self.rest(clause);
+        // What describes somebody of whom the clause says nothing more may be what they do.
+        let idle = !robot && !clause.subject.is_empty() && !self.tells_since(start);
+        self.rest(clause, idle);
         // A reason for which nobody does anything yet is one for what comes.
         let own = self.found.get(start..).unwrap_or_default();
         let does = own.iter().any(|own| matches!(own.says, Says::Do(_)));
@@ -137,8 +139,7 @@ impl Maker<'_> {
 
     /// A condition that is no reason: `while the other walks on` is a clause of its own.
     pub(crate) fn beside(&mut self, condition: &Condition) {
-        let own = !condition.clause.subject.is_empty() && !condition.clause.acts.is_empty();
-        if matches!(condition.tie, Tie::While | Tie::When) && own {
+        if matches!(condition.tie, Tie::While | Tie::When | Tie::After) && condition.tells_of_people() {
             self.clause(&condition.clause);
         } else {
             self.say(condition.clause.tokens.clone(), Says::NotRead);
@@ -197,12 +198,29 @@ impl Maker<'_> {
     pub(crate) fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
         let tokens = act.tokens.clone();
         let waits = !whole.when.is_empty() && frame.act.is_some();
+        // A side that is ruled out is none.
+        if act.not && frame.side.is_some() {
+            return self.say(tokens, Says::NotRead);
+        }
         let relation = frame.relate.filter(|_| !act.not && !waits);
         if relation.is_some() || frame.side.is_some() {
             self.say(tokens.clone(), Says::Relate(who.clone(), relation, frame.side));
         }
+        // `First a nurse crosses, then a doctor crosses.`
+        let comes = |relation: Relation| !relation.stands() && relation != Relation::Staying;
+        let after = |condition: &Condition| condition.tie == Tie::After && condition.tells_of_people();
+        let then = whole.clause.join == Join::Then && whole.clause.own || whole.clause.conditions.iter().any(after);
+        if then && relation.is_some_and(comes) {
+            self.say(tokens.clone(), Says::After(None, who.clone()));
+        }
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
+        }
+        if frame.robot_first && relation.is_some() {
+            self.say(tokens.clone(), Says::RobotFirst(None));
+        }
+        if frame.queue {
+            self.say(tokens.clone(), Says::Queue(who.clone()));
         }
         // Whoever crosses after some time, or once they may, sets off then.
         let sets_off =
@@ -322,7 +340,7 @@ impl Maker<'_> {
         let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
         // `from the ward to the exit`
         let route = clause.subject.is_empty()
-            && clause.acts.is_empty()
+            && clause.acts.iter().all(|act| frame(act).is_some_and(|frame| frame.plain))
             && clause.places.len() > 1
             && clause.places.iter().any(|at| at.from || at.via)
             && clause.places.iter().any(|at| at.to);

@@ -22,6 +22,7 @@ struct File {
     labels: String,
     slow: String,
     brisk: String,
+    hurried: String,
     numbers: BTreeMap<String, u32>,
     ordinals: BTreeMap<String, u32>,
     meters: BTreeMap<String, f64>,
@@ -42,6 +43,7 @@ pub(crate) struct Words {
     pub(crate) classes: BTreeMap<String, BTreeSet<String>>,
     forms: BTreeMap<String, String>,
     person_endings: Vec<String>,
+    pub(crate) hurried: BTreeSet<String>,
 }
 
 /// Endings, and what stands in their place in the base form.
@@ -69,6 +71,7 @@ impl Words {
             seconds: file.seconds,
             forms: file.forms,
             person_endings: split(&file.person_endings).collect(),
+            hurried: split(&file.hurried).collect(),
             classes: file.classes.into_iter().map(|(name, all)| (name, split(&all).collect())).collect(),
             ..Self::default()
         };

@@ -48,7 +48,7 @@ pub(crate) fn lines(
         if let Some(mps) = extra.speed_mps {
             put(format!("{id}: pace = {mps}"), true, None);
         }
-        let person = story.cast.people.get(at);
+        let person = story.people.get(at);
         for (nth, rule) in human.rules.iter().enumerate() {
             let read = person.and_then(|person| person.rules.get(nth));
             let fact = match rule.gesture {
@@ -66,7 +66,7 @@ pub(crate) fn lines(
             }
         }
         for (act, _) in person.iter().flat_map(|person| &person.never) {
-            put(format!("{id}: never {}", format!("{act:?}").to_lowercase()), true, None);
+            put(format!("{id}: never {}", act.name()), true, None);
         }
         if person.is_some_and(|person| person.crosses.is_some()) {
             put(format!("{id}: crosses the robot's way"), true, None);
@@ -85,15 +85,6 @@ pub(crate) fn lines(
     }
     if let Some((class, _)) = &task.via {
         put(format!("robot: via = \"{}\"", class.name()), true, None);
-    }
-    for act in &story.on_its_way {
-        put(format!("robot: {}", format!("{act:?}").to_lowercase()), false, None);
-    }
-    for quote in &story.doors {
-        put(format!("doors open by themselves: {quote}"), false, None);
-    }
-    if let Some(part) = story.robot_part {
-        put(format!("robot: {part}"), true, None);
     }
     found
 }

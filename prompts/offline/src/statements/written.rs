@@ -16,7 +16,7 @@ const SEED: u64 = 1;
 
 /// The tables of the form: `[[human]]`, `[[order]]`, and what the robot does.
 pub(crate) fn form(request: &Request, reading: &Reading, location: &Location) -> String {
-    let extras = understand(request, location, reading.by).extras;
+    let extras = understand(request, location).extras;
     let question = Question::first(request.clone(), reading.clone(), location.clone(), SEED);
     let proposed = proposal::propose(&question);
     let place = place(reading, location);
