@@ -122,11 +122,6 @@ const READINGS: &[(&str, &str, &str)] = &[
     ),
     (
         "office",
-        "A curious employee follows the robot in the corridor and another person obstructs the robot's path",
-        "2 humans · 1 employee follows the robot · 1 blocks the robot · place: corridor",
-    ),
-    (
-        "office",
         "The robot is passing an intersection when people suddenly come out of a room.",
         "2 humans · 2 come out of the room · place: room",
     ),
@@ -181,22 +176,11 @@ const READINGS: &[(&str, &str, &str)] = &[
         "3 humans · 1 follows the robot · 1 runs away · 1 blocks the robot",
     ),
     ("office", "A person hurries past the robot from behind", "1 human · 1 comes from behind"),
-    ("hospital", "The robot leads a visitor to the exit", "1 human"),
     ("office", "Two people talk in the kitchen", "2 humans · 2 talk · group of 2 · place: room"),
-    (
-        "office",
-        "Someone does not notice the robot because they look at their phone and walks towards it.",
-        "1 human · 1 comes towards the robot",
-    ),
     (
         "office",
         "A person and a nurse walk together towards the robot. When the robot says EXCUSE_ME, they give way.",
         "2 humans · 1 comes towards the robot, gives way · 1 nurse comes towards the robot, gives way · group of 2",
-    ),
-    (
-        "office",
-        "Both the manager and the visitor wait at the doorway until the robot has passed",
-        "2 humans · 1 manager stands, stops · 1 visitor stands, stops · place: doorway",
     ),
     (
         "warehouse",
