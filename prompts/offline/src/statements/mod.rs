@@ -9,6 +9,7 @@
 
 mod influence;
 mod lines;
+mod plain;
 mod rough;
 mod text;
 mod words;
