@@ -46,7 +46,15 @@ pub(super) fn clause(text: &str, read: &Read, at: &Range<usize>) -> Option<Strin
                 Some(last) => last.push_str(&format!(" at {}", the(*class))),
                 None => return None,
             },
-            _ => return None,
+            Line::Person(_)
+            | Line::Relation(..)
+            | Line::Side(_)
+            | Line::Pace(_)
+            | Line::Group(_)
+            | Line::Step(..)
+            | Line::RobotVia(_)
+            | Line::RobotFirst(_)
+            | Line::Before(..) => return None,
         }
     }
     (!parts.is_empty()).then(|| parts.join(", and "))
@@ -99,7 +107,16 @@ fn phrases(read: &Read, who: usize, lines: &[&Line], many: bool) -> Option<Vec<S
             Line::Step(_, number) => found.push(step(read, person, person.steps.get(*number)?, many)?),
             Line::Person(_) => {}
             Line::Group(_) if person.relation == Some(Relation::Static) => found.push(verb("talk in a group", many)),
-            _ => return None,
+            Line::Side(_)
+            | Line::Pace(_)
+            | Line::Group(_)
+            | Line::Place(_)
+            | Line::RobotStart(_)
+            | Line::RobotGoal(_)
+            | Line::RobotVia(_)
+            | Line::RobotFirst(_)
+            | Line::Before(..)
+            | Line::RobotSays(_) => return None,
         }
     }
     found.dedup();
