@@ -6,8 +6,7 @@ use socrates_reader::Reader;
 
 use crate::card::{Card, card, catalog};
 use crate::draw::Draw;
-use crate::story::Story;
-use crate::understand::Extra;
+use crate::story::{Extra, Story};
 
 /// Fills the reading with the people of its pattern, as few as the card allows.
 pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, location: &Location) -> Vec<Extra> {

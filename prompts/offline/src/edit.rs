@@ -5,34 +5,18 @@
 //! they did.
 
 use socrates_model::job::Stage;
-use socrates_model::{Behaviors, Fault, FaultCode, Paths, Proposal, Reading};
+use socrates_model::{Behaviors, Fault, Proposal, Reading};
 use socrates_prompts::Question;
 use socrates_reader::Edit;
 
+use crate::desk::{Desk, Draft};
 use crate::edit_whom::Crowd;
 use crate::edit_wish::{Wish, wishes};
 use crate::{edit_paths, edit_people, edit_settle, edit_together};
 
-/// What can be said, for those whose words were not understood.
-const SAYABLE: &str = "what can be said: make a path longer or shorter, reverse it, start or end it somewhere, avoid a place, move \
-                       the meeting to another place; add, remove, slow down or speed up somebody; let two swap places; \
-                       make some a group or break it up; what somebody does, when, how long and how near; add, change or \
-                       remove a gesture";
-
 /// Whoever should be slower, or faster, walks at so much of their speed.
 const SLOWER: f64 = 0.7;
 const FASTER: f64 = 1.35;
-
-/// What there is to edit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Draft {
-    /// The proposal as it stands.
-    pub proposal: Proposal,
-    /// The paths, if there are any yet.
-    pub paths: Option<Paths>,
-    /// The behaviors, if there are any yet.
-    pub behaviors: Option<Behaviors>,
-}
 
 /// What became of an edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,35 +61,7 @@ pub fn settled(question: &Question, before: &Draft, proposal: Proposal, changed:
     desk.finish(before, &question.reading)
 }
 
-/// The artifacts while they are being edited.
-pub(crate) struct Desk {
-    pub(crate) question: Question,
-    pub(crate) draft: Draft,
-    pub(crate) done: Vec<String>,
-    pub(crate) left_out: Vec<String>,
-    pub(crate) not_done: Vec<Fault>,
-    /// Humans whose part changed, by place in the proposal.
-    pub(crate) changed: Vec<usize>,
-}
-
 impl Desk {
-    fn of(question: &Question, draft: &Draft) -> Self {
-        Self {
-            question: Question {
-                stage: Stage::Paths,
-                feedback: Vec::new(),
-                refused: None,
-                only: Vec::new(),
-                ..question.clone()
-            },
-            draft: draft.clone(),
-            done: Vec::new(),
-            left_out: Vec::new(),
-            not_done: Vec::new(),
-            changed: Vec::new(),
-        }
-    }
-
     /// Does a wish, or nothing of it: what is said to be done is done, and for what is not nothing was changed.
     fn grant(&mut self, wish: &Wish, crowd: &mut Crowd) {
         let before = (self.draft.clone(), self.question.clone(), self.changed.clone(), crowd.clone());
@@ -140,25 +96,6 @@ impl Desk {
             Edit::Swap => edit_together::swap(self, wish, crowd),
             Edit::Gesture => edit_together::gesture(self, wish, crowd),
             Edit::Story => edit_people::story(self, wish, crowd),
-        }
-    }
-
-    /// Says that something was not done.
-    pub(crate) fn refuse(&mut self, quote: &str, why: &str) {
-        let message = format!("`{}` {why}; nothing was changed for it; {SAYABLE}", quote.trim());
-        self.not_done.push(Fault::new(FaultCode::PRead, "edit", message));
-    }
-
-    /// Says that the map has no such place.
-    pub(crate) fn no_place(&mut self, quote: &str, why: &str) {
-        let message = format!("`{}` {why}; it has: {}", quote.trim(), crate::place::listed(&self.question.location));
-        self.not_done.push(Fault::new(FaultCode::PPlace, "edit", message));
-    }
-
-    /// Remembers that somebody's part changed.
-    pub(crate) fn touch(&mut self, who: usize) {
-        if !self.changed.contains(&who) {
-            self.changed.push(who);
         }
     }
 

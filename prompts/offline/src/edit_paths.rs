@@ -7,7 +7,7 @@ use socrates_solver::Ends;
 use socrates_solver::edit::{Change, changed, joined};
 
 use crate::card::card;
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;
 use crate::{place, solve, spot};

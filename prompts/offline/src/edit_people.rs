@@ -10,7 +10,7 @@ use socrates_model::{
 };
 use socrates_reader::{Fate, Read};
 
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_paths;
 use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;

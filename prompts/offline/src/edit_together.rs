@@ -3,7 +3,7 @@
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Action, FactKind, Gesture, HumanId, Rule, Trigger};
 
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_people;
 use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;

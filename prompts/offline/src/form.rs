@@ -15,7 +15,7 @@ use socrates_model::{
     Trigger,
 };
 
-use crate::proposal::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
+use crate::manner::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
 use crate::story::{Before, Group, Person, ReadRule, Story, stands};
 use crate::{named, place};
 

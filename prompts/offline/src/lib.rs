@@ -28,9 +28,11 @@ mod story;
 mod told;
 
 mod default_cast;
+mod lines;
 mod pattern;
 mod summary;
 mod understand;
+mod written;
 
 mod facing;
 mod named;
@@ -44,6 +46,7 @@ mod events;
 mod proposal;
 mod prose;
 
+mod desk;
 mod edit;
 mod edit_paths;
 mod edit_people;
@@ -57,6 +60,7 @@ mod answer;
 mod chance;
 mod draw;
 mod mended;
+mod name;
 mod noticing;
 mod solve;
 mod spans;
@@ -81,17 +85,16 @@ mod tests;
 
 use socrates_model::{Location, Reading, Request};
 
-pub use answer::Offline;
+pub use answer::{Offline, impossible};
 pub use card::{Card, catalog};
-pub use edit::{Draft, Edited, edit, settled};
-pub use solve::{impossible, layout};
+pub use desk::Draft;
+pub use edit::{Edited, edit, settled};
+pub use name::NAME;
+pub use solve::layout;
 pub use stated::{dispute, stated};
 pub use summary::summary;
 pub use understand::CONTEXT_NOTE;
 pub use unfit::Unfit;
-
-/// Name of this author, as artifacts spell it.
-pub const NAME: &str = "offline/1";
 
 /// Reads a request: who, where, what, and every word that was not understood.
 ///
@@ -122,7 +125,7 @@ pub fn passes(rough: &str) -> String {
 /// over it. How somebody stands to the robot's way, where the text leaves it open, is chosen as the author would.
 #[must_use]
 pub fn form_of(request: &Request, reading: &Reading, location: &Location) -> String {
-    statements::form(request, reading, location)
+    written::form(request, reading, location)
 }
 
 /// The keys of `[expect]` that would settle a problem of the reading for which nothing is made: found by setting them.

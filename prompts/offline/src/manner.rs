@@ -1,6 +1,6 @@
 //! How an act is played of which a text says no more: what it is, when it begins, and how long it lasts.
 
-use socrates_model::{Action, Gesture, HumanId, Trigger};
+use socrates_model::{Action, Gesture, HumanId, Relation, Rule, Trigger};
 use socrates_reader::Act;
 
 /// An act with the moment and the duration that are taken where the text gives none.
@@ -71,4 +71,13 @@ pub(crate) fn words(act: Act, whom: Option<HumanId>, sign: Option<Gesture>) -> S
         (Act::Navigate, _) => "walks on".to_owned(),
         (Act::Sign, _) => sign.map_or_else(String::new, |sign| format!("gestures {sign}")),
     }
+}
+
+/// Fastest pace of somebody whom a robot of 0.8 m/s catches up with, and slowest of somebody who overtakes it, m/s.
+pub(crate) const AHEAD_MPS: f64 = 0.75;
+pub(crate) const OVERTAKES_MPS: f64 = 1.2;
+
+/// Whether somebody who stands to the robot's way like this, and does this, overtakes it.
+pub(crate) fn overtakes(relation: Relation, rules: &[Rule]) -> bool {
+    relation == Relation::Behind && !rules.iter().any(|rule| rule.act == Action::FollowRobot)
 }

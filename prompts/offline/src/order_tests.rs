@@ -66,12 +66,8 @@ fn until_the_robot_has_passed_is_until_then() {
 
 #[test]
 fn exceptions_leave_out_who_is_excepted() {
-    for (rough, humans, who) in
-        [("A nurse and two doctors walk towards the robot. Everybody except the nurse stops.", 3, vec![2, 3])]
-    {
-        let reading = told(rough);
-        assert_eq!((reading.humans.len(), doing(&reading, &Action::StandStill)), (humans, who), "{rough}");
-    }
+    let reading = told("A nurse and two doctors walk towards the robot. Everybody except the nurse stops.");
+    assert_eq!((reading.humans.len(), doing(&reading, &Action::StandStill)), (3, vec![2, 3]));
 }
 
 #[test]

@@ -13,10 +13,13 @@ use socrates_reader::Reader;
 
 use crate::card::{Card, card};
 use crate::draw::Draw;
+use crate::manner::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
+use crate::name::NAME;
 use crate::settle::CIRCLE_M;
-use crate::statements::unread;
-use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, facing, named_way, noticing, place, prose, sides, solve};
+use crate::story::Extra;
+use crate::summary::unread;
+use crate::understand::understand;
+use crate::{chance, default_cast, events, facing, named_way, noticing, place, prose, sides, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -145,15 +148,6 @@ fn where_at(
         .or(plain)
         .or_else(|| usual.into_iter().find(there))
         .unwrap_or(PlaceClass::Plain)
-}
-
-/// Fastest pace of somebody whom a robot of 0.8 m/s catches up with, and slowest of somebody who overtakes it, m/s.
-pub(crate) const AHEAD_MPS: f64 = 0.75;
-pub(crate) const OVERTAKES_MPS: f64 = 1.2;
-
-/// Whether somebody who stands to the robot's way like this, and does this, overtakes it.
-pub(crate) fn overtakes(relation: Relation, rules: &[Rule]) -> bool {
-    relation == Relation::Behind && !rules.iter().any(|rule| rule.act == Action::FollowRobot)
 }
 
 fn proposed(

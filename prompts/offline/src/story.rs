@@ -82,6 +82,18 @@ impl Person {
     }
 }
 
+/// What is known of one human beyond the reading.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Extra {
+    pub(crate) speed_mps: Option<f64>,
+    pub(crate) start: Option<PlaceClass>,
+    pub(crate) goal: Option<PlaceClass>,
+    /// Per rule: whether the text says when.
+    pub(crate) stated: Vec<bool>,
+    /// Per rule: whether the text leaves open how near the robot is then; empty for the rules of a card, which draws its own.
+    pub(crate) open: Vec<bool>,
+}
+
 /// People who belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Group {

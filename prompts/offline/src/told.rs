@@ -157,7 +157,15 @@ impl Telling<'_> {
             match step.act {
                 Act::Navigate => goes_on = doing.walks_on(&mut own).or(goes_on),
                 Act::Sign => doing.signs(&mut own),
-                _ => match called_by(story, step) {
+                Act::GiveWay
+                | Act::Block
+                | Act::Look
+                | Act::Startle
+                | Act::StandStill
+                | Act::RunAway
+                | Act::Approach
+                | Act::Follow
+                | Act::TurnBack => match called_by(story, step) {
                     Some(asker) => doing.does(&mut own, Trigger::HumanSays(asker, Gesture::FollowMe)),
                     None => doing.does(&mut own, Trigger::Always),
                 },
@@ -261,7 +269,7 @@ impl Doing<'_> {
             matches!(trigger, RobotSays(_) | HumanSays(..) | RobotStopped | AfterSecs(_) | RobotMoving | RobotPassed)
         };
         let own_reason = self.when.first().is_some_and(answers);
-        if own_reason && !self.since_last(own, Act::Navigate).is_some_and(|when| !when.is_empty()) {
+        if own_reason && self.since_last(own, Act::Navigate).is_none() {
             let read = ReadRule { then: false, lasts: false, ..self.read(walks(self.when.clone()), (true, true)) };
             if !own.rules.contains(&read) {
                 own.rules.insert(0, read);

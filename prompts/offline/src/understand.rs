@@ -9,8 +9,8 @@ use socrates_model::{
 use socrates_reader::{Familiar, Reader};
 
 use crate::card::Ends;
-use crate::statements::{Line, lines};
-use crate::story::{Before, ReadRule, Story, Unplayed, agent, human_id};
+use crate::lines::{Line, lines};
+use crate::story::{Before, Extra, ReadRule, Story, Unplayed, agent, human_id};
 use crate::task::{self, End, Task};
 use crate::{aside, chance, default_cast, expect, facing, form, named_way, pattern, place, settle, sides, spot, told};
 
@@ -29,18 +29,6 @@ pub(crate) struct Understood {
     pub(crate) task: Task,
     /// Sentences that speak to the program.
     pub(crate) instructions: Vec<String>,
-}
-
-/// What is known of one human beyond the reading.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Extra {
-    pub(crate) speed_mps: Option<f64>,
-    pub(crate) start: Option<PlaceClass>,
-    pub(crate) goal: Option<PlaceClass>,
-    /// Per rule: whether the text says when.
-    pub(crate) stated: Vec<bool>,
-    /// Per rule: whether the text leaves open how near the robot is then; empty for the rules of a card, which draws its own.
-    pub(crate) open: Vec<bool>,
 }
 
 /// Reads a request. Never fails: what cannot be read stands in `problems`.

@@ -337,7 +337,7 @@ impl Cast {
         }
         // `steps aside when it asks him to`
         for reason in when.iter_mut().filter(|reason| reason.cue == Cue::Says && reason.sign.is_none()) {
-            reason.sign = sign_for(act);
+            reason.sign = act.asked_by();
         }
         self.last.clone_from(&who);
         if let Some(whom) = whom.as_ref().filter(|whom| act == Act::Sign && !whom.is_empty()) {
@@ -387,15 +387,4 @@ impl Cast {
 /// Whether somebody waits for a word of the robot.
 fn is_word(reason: &Reason<People>) -> bool {
     reason.cue == Cue::Says && reason.who.is_none()
-}
-
-/// The sign by which somebody is asked for an act.
-const fn sign_for(act: Act) -> Option<Gesture> {
-    match act {
-        Act::GiveWay | Act::RunAway => Some(Gesture::ExcuseMe),
-        Act::StandStill | Act::Block => Some(Gesture::Wait),
-        Act::Follow | Act::Approach => Some(Gesture::FollowMe),
-        Act::Navigate => Some(Gesture::Proceed),
-        Act::Look | Act::Startle | Act::TurnBack | Act::Sign => None,
-    }
 }

@@ -1,8 +1,8 @@
-//! The reader of requests: text to statements to a form. No map, no catalog of cards, no geometry, no weights.
+//! The reader of requests: text to statements to a story. No map, no catalog of cards, no geometry, no weights.
 //!
 //! ```text
-//! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story ─► form
-//!         lex       normalize    chunk     sentence        clause_says   discourse    story    form
+//! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story
+//!         lex       normalize    chunk     sentence        clause_says   discourse    story
 //!         words     scopes       phrase    subject         times         cast           │
 //!                   rewrites     name      predicate       maker                        └─► account: what became of every word
 //!                                places    find: rows of frames, signs
@@ -54,8 +54,6 @@ mod discourse;
 mod line;
 mod story;
 mod told;
-
-mod form;
 
 mod kept;
 

@@ -35,7 +35,7 @@ pub enum Act {
 }
 
 impl Act {
-    /// Its name in a form.
+    /// Its name in the lines of a story: that of the action of a form as which it is played.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -49,6 +49,18 @@ impl Act {
             Self::Navigate => "navigate",
             Self::TurnBack => "turn_back",
             Self::Sign => "say",
+        }
+    }
+
+    /// The sign by which somebody is asked for it.
+    #[must_use]
+    pub const fn asked_by(self) -> Option<Gesture> {
+        match self {
+            Self::GiveWay | Self::RunAway => Some(Gesture::ExcuseMe),
+            Self::StandStill | Self::Block => Some(Gesture::Wait),
+            Self::Follow | Self::Approach => Some(Gesture::FollowMe),
+            Self::Navigate => Some(Gesture::Proceed),
+            Self::Look | Self::Startle | Self::TurnBack | Self::Sign => None,
         }
     }
 }

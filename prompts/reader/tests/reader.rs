@@ -232,19 +232,6 @@ fn odd_texts_are_read_as_nothing() {
     }
 }
 
-#[test]
-fn a_story_makes_a_form() {
-    let read = socrates_reader::read(
-        "Two nurses come towards the robot in the corridor. They step aside when it is 3 m away.",
-    );
-    let form = toml::to_string(&read.story.form()).unwrap();
-    assert!(
-        form.contains("count = 2") && form.contains("relation = \"frontal\"") && form.contains("place = \"corridor\""),
-        "{form}"
-    );
-    assert!(form.contains("act = \"give_way\"") && form.contains("robot_near = 3.0"), "{form}");
-}
-
 /// The passes of a sentence, as `--show` prints them; the file beside this one is what a reader of the crate looks at first.
 #[test]
 fn the_passes_print_themselves() {

@@ -1,8 +1,8 @@
 //! Which words of a task or context were read: those of which their reader made something, where their clause changes a line.
 
-use super::lines::Line;
 use super::text::{Token, masked};
 use super::words::Kind;
+use crate::lines::Line;
 
 /// What the words of a text do to the reading.
 pub(super) struct Influence {

@@ -8,11 +8,10 @@
 //! ```
 
 mod influence;
-mod lines;
+mod plain;
 mod rough;
 mod text;
 mod words;
-mod written;
 
 use std::ops::Range;
 
@@ -24,12 +23,11 @@ use socrates_model::statement::{Background, Became, Statement, TextKey, covers};
 use socrates_model::{Fault, Location, Reading, Request};
 use socrates_reader::Reader;
 
+use crate::lines::Line;
 use crate::understand::{Understood, understood};
 use influence::Influence;
-pub(crate) use lines::{Line, lines};
 use text::Token;
 use words::Kind;
-pub(crate) use written::form;
 
 /// What became of a word.
 #[derive(Debug, Clone, PartialEq)]
@@ -243,15 +241,4 @@ fn read_again(request: &Request, location: &Location, key: TextKey, text: &str) 
         TextKey::SocialContext => text.clone_into(&mut other.social_context),
     }
     understood(&other, location, false).lines
-}
-
-/// The words of the reading's texts that were not understood, each once, as they stand there.
-pub(crate) fn unread(reading: &Reading) -> Vec<&str> {
-    let mut words: Vec<&str> = Vec::new();
-    for statement in reading.statements.iter().filter(|statement| statement.is_unread()) {
-        if !words.contains(&statement.quote.as_str()) {
-            words.push(&statement.quote);
-        }
-    }
-    words
 }

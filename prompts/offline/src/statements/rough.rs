@@ -7,6 +7,7 @@ use socrates_model::statement::{Background, Became, Statement, TextKey};
 use socrates_model::{Fault, Reading, Request};
 use socrates_reader::{Fate, Piece, Read};
 
+use super::plain;
 use crate::aside;
 use crate::understand::Understood;
 
@@ -47,18 +48,15 @@ pub(super) fn statements(request: &Request, whole: &Understood, reading: &Readin
     found.into_iter().filter_map(|(at, became)| statement(request, text, &at, became)).collect()
 }
 
-/// The clause of a piece without the words that were not read, where that is read whole and the story stays the same.
+/// The clause of a piece in plain words, where those are read whole and the story stays the same.
 fn rewording(text: &str, read: &Read, piece: &Piece) -> Option<String> {
     let own = || read.pieces.iter().filter(|other| other.clause.is_some() && other.clause == piece.clause);
     let lost = |fate: &Fate| matches!(fate, Fate::NotRead | Fate::NotPlayed(_));
-    own().find(|other| other.fate == Fate::Read)?;
-    let (from, to) = (own().map(|other| other.at.start).min()?, own().map(|other| other.at.end).max()?);
-    let kept: Vec<&str> =
-        own().filter(|other| !lost(&other.fate)).filter_map(|other| text.get(other.at.clone())).collect();
-    let clause = kept.join(" ");
-    let again = format!("{}{clause}{}", text.get(..from)?, text.get(to..)?);
+    let at = own().map(|other| other.at.start).min()?..own().map(|other| other.at.end).max()?;
+    let clause = plain::clause(text, read, &at)?;
+    let again = format!("{}{clause}{}", text.get(..at.start)?, text.get(at.end..)?);
     let reads = socrates_reader::read(&again);
-    let within = |other: &Piece| other.at.start < from + clause.len() && from < other.at.end;
+    let within = |other: &Piece| other.at.start < at.start + clause.len() && at.start < other.at.end;
     let whole = !reads.pieces.iter().any(|other| within(other) && lost(&other.fate));
     (whole && reads.story == read.story).then_some(clause)
 }

@@ -2,11 +2,9 @@
 
 use socrates_model::{FactKind, HumanId, Location, Reading, Rule, Trigger};
 
-use super::written::inline;
 use crate::spot;
-use crate::story::Story;
+use crate::story::{Extra, Story};
 use crate::task::{self, Task};
-use crate::understand::Extra;
 
 /// One line, with the fact that it tells, if one does.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,4 +153,9 @@ fn moment(when: &Trigger, exact: bool) -> String {
         Some(_) if !exact => inline(&when.clone().at_distance(0.0)).replace("0.0", "…"),
         Some(_) | None => inline(when),
     }
+}
+
+/// A value of the model as it stands within a line of TOML.
+pub(crate) fn inline<T: serde::Serialize>(value: &T) -> String {
+    toml::Value::try_from(value).map(|value| value.to_string()).unwrap_or_default()
 }

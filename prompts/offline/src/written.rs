@@ -7,9 +7,11 @@ use socrates_model::rule::RobotDo;
 use socrates_model::{FactKind, Location, Reading, Relation, Request, RobotRule, Rule, Trigger};
 use socrates_prompts::Question;
 
+use crate::lines::inline;
 use crate::proposal;
 use crate::spot;
-use crate::understand::{Extra, understand};
+use crate::story::Extra;
+use crate::understand::understand;
 
 /// Of which seed the choices are that a form has to make.
 const SEED: u64 = 1;
@@ -195,11 +197,6 @@ fn deed(rule: &RobotRule) -> Option<String> {
         RobotDo::Lead(m) => format!("lead_m = {m:?}"),
     };
     Some(format!("{{ when = {}, {what} }}", inline(&rule.when)))
-}
-
-/// A value of the model as it stands within a line of TOML.
-pub(super) fn inline<T: serde::Serialize>(value: &T) -> String {
-    toml::Value::try_from(value).map(|value| value.to_string()).unwrap_or_default()
 }
 
 fn quoted(text: &str) -> String {
