@@ -8,7 +8,7 @@ use socrates_model::{
     Action, AgentId, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Predicate, Proposal,
     Relation, Rule, Trigger,
 };
-use socrates_reader::{Fate, Read};
+use socrates_reader::{Fate, Read, Reader};
 
 use crate::desk::Desk;
 use crate::edit_paths;
@@ -187,7 +187,7 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
         facing: None,
         rules,
         group: None,
-        speed_mps: said.speed_mps,
+        speed_mps: said.speed_mps.or_else(|| Reader::shipped().pace_of(&said.role)),
         start: said.start,
         goal: None,
     };

@@ -34,6 +34,7 @@ mod summary;
 mod understand;
 mod written;
 
+mod again;
 mod facing;
 mod named;
 mod named_way;

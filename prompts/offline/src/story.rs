@@ -59,6 +59,8 @@ pub(crate) struct Person {
     pub(crate) walks: bool,
     /// Whether they are startled by the robot.
     pub(crate) startled: bool,
+    /// Words by which they meet the robot twice; where the second time, if said.
+    pub(crate) twice: Option<(Option<PlaceClass>, String)>,
     /// What they do not do, with the words.
     pub(crate) never: Vec<(Act, String)>,
 }

@@ -9,7 +9,7 @@
 
 use socrates_model::request::MAX_HUMANS;
 use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, GroupId, PlaceClass, Relation, Rule, Trigger};
-use socrates_reader::{Act, Cue, Line, Read, Reason, Step};
+use socrates_reader::{Act, Cue, Line, Read, Reader, Reason, Step};
 
 use crate::manner;
 use crate::story::{Before, Group, Person, ReadRule, Story, agent, human_id, stands};
@@ -21,7 +21,11 @@ const ANYBODY: [&str; 7] = ["person", "people", "human", "individual", "actor", 
 
 /// The story of a text.
 pub(crate) fn story(text: &str) -> Story {
-    told(text, &socrates_reader::read(text))
+    let mut story = told(text, &socrates_reader::read(text));
+    for person in &mut story.people {
+        person.speed_mps = person.speed_mps.or_else(|| Reader::shipped().pace_of(&person.role));
+    }
+    story
 }
 
 /// The story that was read of a text.
@@ -124,6 +128,7 @@ impl Telling<'_> {
         }
         own.side = person.side.map(|side| (side, self.quote(|line| *line == Line::Side(who))));
         own.speed_mps = person.pace_mps;
+        own.twice = person.twice.map(|place| (place, self.quote(|line| *line == Line::Twice(who))));
         let any = || self.quote(|line| line.person() == Some(who));
         own.never = person.denied.iter().map(|act| (*act, any())).collect();
     }

@@ -12,7 +12,9 @@ use crate::card::Ends;
 use crate::lines::{Line, lines};
 use crate::story::{Before, Extra, ReadRule, Story, Unplayed, agent, human_id};
 use crate::task::{self, End, Task};
-use crate::{aside, chance, default_cast, expect, facing, form, named_way, pattern, place, settle, sides, spot, told};
+use crate::{
+    again, aside, chance, default_cast, expect, facing, form, named_way, pattern, place, settle, sides, spot, told,
+};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -294,6 +296,13 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
             }
             facts.push((quote, kind));
         }
+        let twice = person.twice.as_ref();
+        let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));
+        if let Some(human) = reading.humans.get_mut(i).filter(|_| twice.is_some()) {
+            let joint = if human.summary.is_empty() { "" } else { ", " };
+            human.summary.push_str(&format!("{joint}meets the robot twice"));
+        }
+        facts.extend(twice);
         facts.extend(person.rules.iter().flat_map(|read| facts_of_rule(id(i), read)));
     }
     for Before { first, then, at_door, quote } in &story.order {

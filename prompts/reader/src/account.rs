@@ -131,6 +131,7 @@ impl Fate {
             | Says::RobotFirst(_)
             | Says::After(Some(_), _)
             | Says::Queue(_)
+            | Says::Twice(..)
             | Says::Goes
             | Says::Happens(..)
             | Says::There
@@ -284,8 +285,9 @@ fn joined(pieces: Vec<Piece>) -> Vec<Piece> {
             }
             // Words that a rewrite put in place of others stand where those stand.
             Some(last) if piece.at.start < last.at.end => {
-                if piece.fate == Fate::NotRead {
-                    last.fate = Fate::NotRead;
+                let reads = piece.fate == Fate::Read && matches!(last.fate, Fate::Background(_));
+                if piece.fate == Fate::NotRead || reads {
+                    last.fate = piece.fate;
                 }
                 last.at.end = last.at.end.max(piece.at.end);
             }

@@ -31,7 +31,7 @@ pub(crate) struct Cast {
     pub(crate) roles: Vec<String>,
     pub(crate) vague: People,
     pub(crate) plain: People,
-    /// Those of whom is told what they do, how fast, or with whom.
+    /// Those of whom is told what they do, or how fast.
     pub(crate) active: People,
     /// People who were named last.
     pub(crate) last: People,

@@ -109,7 +109,13 @@ impl Maker<'_> {
             if robot {
                 self.say(tokens, Says::Background(Background::Errand));
             } else if !clause.subject.is_empty() {
-                self.say(tokens, Says::Pace(clause.subject.clone(), pace.value));
+                // `suddenly stops` tells of no pace.
+                let walks = |act: &Predicate| {
+                    let frame = self.lexicon.frames.get(act.row);
+                    frame.is_some_and(|frame| frame.goes || frame.relate.is_some_and(|relation| !relation.stands()))
+                };
+                let walks = clause.acts.is_empty() || clause.acts.iter().any(walks);
+                self.say(tokens, if walks { Says::Pace(clause.subject.clone(), pace.value) } else { Says::Goes });
             }
         }
         // What describes somebody of whom the clause says nothing more may be what they do.
@@ -196,7 +202,7 @@ impl Maker<'_> {
 
     /// Somebody does something, to the robot or to nobody.
     pub(crate) fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
-        let tokens = act.tokens.clone();
+        let (tokens, clause) = (act.tokens.clone(), whole.clause);
         let waits = !whole.when.is_empty() && frame.act.is_some();
         // A side that is ruled out is none.
         if act.not && frame.side.is_some() {
@@ -215,6 +221,10 @@ impl Maker<'_> {
         }
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
+        }
+        if frame.twice && !act.not {
+            let place = clause.places.first().filter(|_| frame.relate.is_none()).and_then(|at| at.class);
+            self.say(tokens.clone(), Says::Twice(who.clone(), place));
         }
         if frame.robot_first && relation.is_some() {
             self.say(tokens.clone(), Says::RobotFirst(None));
@@ -248,7 +258,7 @@ impl Maker<'_> {
         } else if frame.asks || frame.relate == Some(Relation::Leaving) && none {
             // `nobody gets out`: then all stay, of whom nothing was read.
             self.say(tokens, Says::NotRead);
-        } else if relation.is_none() && !frame.group {
+        } else if relation.is_none() && !frame.group && !frame.twice {
             // What is denied, or says no more than that somebody is there.
             let walks = frame.plain && frame.goes && !act.not && act.object.is_none();
             self.say(tokens, if walks { Says::Walks(who) } else { Says::Noted(who) });
@@ -386,7 +396,12 @@ impl Maker<'_> {
                 |act: &Predicate| !act.not && frame(act).is_some_and(|frame| frame.relate == Some(Relation::Leaving));
             let leaves = !robot && number == 0 && clause.acts.iter().any(leaves);
             let rank = if leaves && matches!(class, Some(PlaceClass::Room | PlaceClass::Elevator)) { 1 } else { rank };
+            // The place of the second meeting is told with it.
+            let again = |act: &Predicate| frame(act).is_some_and(|frame| frame.twice && frame.relate.is_none());
             let says = match class {
+                Some(_) if clause.acts.iter().any(again) => Says::Goes,
+                // Out of which room somebody comes is not where they are met.
+                Some(PlaceClass::Room) if leaves => Says::Goes,
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
                 Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),

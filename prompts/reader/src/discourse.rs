@@ -85,6 +85,7 @@ fn people_of(says: &Says<People>) -> &[usize] {
         | Says::Group(who)
         | Says::After(_, who)
         | Says::Queue(who)
+        | Says::Twice(who, _)
         | Says::Pace(who, _) => who,
         Says::Do(deed) => &deed.who,
         Says::RobotSays(..)
@@ -186,8 +187,9 @@ impl Cast {
                 Says::Do(deed)
             }
             Says::Walks(who) => Says::Walks(self.people(who)),
-            Says::Group(who) => Says::Group(self.active(who)),
+            Says::Group(who) => Says::Group(self.people(who)),
             Says::Queue(who) => Says::Queue(self.people(who)),
+            Says::Twice(who, place) => Says::Twice(self.people(who), *place),
             Says::Pace(who, mps) => Says::Pace(self.active(who), *mps),
             // `a second one does so`: stands to the robot's way as the first does.
             Says::Do(deed)

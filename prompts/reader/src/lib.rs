@@ -181,6 +181,12 @@ impl Reader {
         one.filter(|_| base == word && bent == token::Bent::S).map_or_else(|| base.clone(), str::to_owned)
     }
 
+    /// How fast people of a role walk, m/s, where the word says something about it: `patient`, `child`.
+    #[must_use]
+    pub fn pace_of(&self, role: &str) -> Option<f64> {
+        self.0.words.paces.get(role).copied()
+    }
+
     /// Whether a word in lower case may tell one place from others in a name.
     #[must_use]
     pub fn may_name(&self, word: &str) -> bool {

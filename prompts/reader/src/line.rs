@@ -15,6 +15,8 @@ pub enum Line {
     Pace(usize),
     /// Somebody is in a group.
     Group(usize),
+    /// Somebody meets the robot twice.
+    Twice(usize),
     /// Somebody's step, by its number from 0.
     Step(usize, usize),
     /// Where it happens.
@@ -43,6 +45,7 @@ impl Line {
             | Self::Side(person)
             | Self::Pace(person)
             | Self::Group(person)
+            | Self::Twice(person)
             | Self::RobotFirst(person)
             | Self::Step(person, _) => Some(*person),
             Self::Before(..)
@@ -67,6 +70,7 @@ impl Line {
         | Self::Side(person)
         | Self::Pace(person)
         | Self::Group(person)
+        | Self::Twice(person)
         | Self::RobotFirst(person)
         | Self::Step(person, _)) = self
         else {

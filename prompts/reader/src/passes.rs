@@ -91,7 +91,10 @@ impl<'a> Passes<'a> {
         };
         let lines = self.telling.lines.into_iter().filter_map(|(line, tokens)| Some((line, bytes(tokens)?))).collect();
         let none = |chunk: &Chunk| {
-            chunk.noun().is_some_and(|noun| noun.pick == Pick::None && matches!(noun.head, Head::Role(_) | Head::Bare))
+            chunk.noun().is_some_and(|noun| {
+                let none = noun.pick == Pick::None || noun.count == Some(0);
+                none && matches!(noun.head, Head::Role(_) | Head::Bare)
+            })
         };
         let nobody = self.telling.story.people.is_empty() && self.chunks.iter().any(none);
         Read { story: Story { nobody, ..self.telling.story }, pieces, lines }
@@ -193,6 +196,7 @@ impl fmt::Display for Shown<'_> {
             Says::Then(reason, _) => write!(f, "then {:?}", reason.cue),
             Says::From(who, class) => write!(f, "from {class}: {}", spaced(who)),
             Says::RobotFirst(_) => f.write_str("robot is first"),
+            Says::Twice(who, _) => write!(f, "meets it twice {}", spaced(who)),
             Says::Queue(who) => write!(f, "queue {}", spaced(who)),
             Says::After(..) => f.write_str("comes after those before"),
             Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),

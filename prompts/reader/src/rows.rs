@@ -123,6 +123,8 @@ pub(crate) struct Frame {
     pub(crate) group: bool,
     /// Whether they stand in it one behind the other.
     pub(crate) queue: bool,
+    /// Whether they meet the robot a second time by it.
+    pub(crate) twice: bool,
     /// What it is as a reason, said of a person.
     pub(crate) cue: Option<Cue>,
     /// What it is as a reason, said of the robot.

@@ -41,6 +41,8 @@ pub enum Says<W> {
     Group(W),
     /// They stand one behind the other.
     Queue(W),
+    /// They meet the robot a second time, where that is said.
+    Twice(W, Option<PlaceClass>),
     /// How fast somebody walks, m/s.
     Pace(W, f64),
     /// Somebody does something, or does not.

@@ -61,6 +61,8 @@ pub struct Person {
     pub group: Option<usize>,
     /// Whether they stand in it one behind the other.
     pub queues: bool,
+    /// Whether they meet the robot twice; the second time there, where that is said.
+    pub twice: Option<Option<PlaceClass>>,
     /// What they do, in the order of the text.
     pub steps: Vec<Step>,
     /// What the text says that they do not do.
@@ -186,6 +188,10 @@ impl Teller {
                 story.each(who, |person| person.group = Some(group));
                 lines.extend(who.iter().map(|person| Line::Group(*person)));
             }
+            Says::Twice(who, place) => {
+                story.each(who, |person| person.twice = Some(*place));
+                lines.extend(who.iter().map(|person| Line::Twice(*person)));
+            }
             Says::Queue(who) => story.each(who, |person| person.queues = true),
             Says::Pace(who, mps) => {
                 story.each(who, |person| person.pace_mps = Some(*mps));
@@ -286,6 +292,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             | Says::RobotFirst(_)
             | Says::After(..)
             | Says::Queue(_)
+            | Says::Twice(..)
             | Says::From(..)
             | Says::Happens(..)
             | Says::RobotVia(_)
@@ -344,6 +351,7 @@ impl Story {
             | Line::Side(_)
             | Line::Pace(_)
             | Line::Group(_)
+            | Line::Twice(_)
             | Line::Step(..)
             | Line::Place(_)
             | Line::RobotVia(_)

@@ -45,6 +45,9 @@ impl fmt::Display for Story {
             if let Some(group) = person.group {
                 writeln!(f, "{name}: group {group}")?;
             }
+            if person.twice.is_some() {
+                writeln!(f, "{name}: meets it twice")?;
+            }
             if person.queues {
                 writeln!(f, "{name}: queue")?;
             }

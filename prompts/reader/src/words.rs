@@ -23,6 +23,7 @@ struct File {
     slow: String,
     brisk: String,
     hurried: String,
+    paces: BTreeMap<String, f64>,
     numbers: BTreeMap<String, u32>,
     ordinals: BTreeMap<String, u32>,
     meters: BTreeMap<String, f64>,
@@ -44,6 +45,8 @@ pub(crate) struct Words {
     forms: BTreeMap<String, String>,
     person_endings: Vec<String>,
     pub(crate) hurried: BTreeSet<String>,
+    /// How fast people of a role walk, m/s.
+    pub(crate) paces: BTreeMap<String, f64>,
 }
 
 /// Endings, and what stands in their place in the base form.
@@ -65,6 +68,7 @@ impl Words {
     pub(crate) fn read(text: &str) -> Result<Self, toml::de::Error> {
         let file: File = toml::from_str(text)?;
         let mut words = Self {
+            paces: file.paces,
             numbers: file.numbers,
             ordinals: file.ordinals,
             meters: file.meters,

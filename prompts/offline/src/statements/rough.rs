@@ -67,12 +67,17 @@ fn became(text: &str, piece: &Range<usize>, whole: &Understood, reading: &Readin
         let mut places = text.match_indices(quote);
         !quote.is_empty() && places.any(|(from, _)| from < piece.end && piece.start < from + quote.len())
     };
-    let own = || reading.facts.iter().filter(|fact| meets(&fact.quote));
+    // The words are those of the text alone; where a form or `[expect]` states the same, the fact is theirs.
+    let own = || whole.reading.facts.iter().filter(|fact| meets(&fact.quote));
+    let stated = |fact: &socrates_model::Fact| reading.facts.iter().find(|other| other.kind == fact.kind);
     let line = |fact: &socrates_model::Fact| {
         let mut lines = whole.lines.iter().filter(|line| line.shown && line.fact.as_ref() == Some(&fact.kind));
         lines.next().map(|line| line.text.clone())
     };
-    Became::Read { lines: own().filter_map(line).collect(), facts: own().map(|fact| fact.id.clone()).collect() }
+    Became::Read {
+        lines: own().filter_map(line).collect(),
+        facts: own().filter_map(stated).map(|fact| fact.id.clone()).collect(),
+    }
 }
 
 fn statement(request: &Request, text: &str, at: &Range<usize>, became: Became) -> Option<Statement> {
