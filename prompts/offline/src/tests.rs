@@ -123,7 +123,7 @@ const READINGS: &[(&str, &str, &str)] = &[
     (
         "office",
         "The robot is passing an intersection when people suddenly come out of a room.",
-        "2 humans · 2 come out of the room · place: room",
+        "2 humans · 2 come out of the room · place: intersection",
     ),
     (
         "office",
