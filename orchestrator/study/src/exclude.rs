@@ -85,9 +85,9 @@ pub fn excluded(ratings: &Ratings, design: &Design) -> BTreeMap<String, Vec<&'st
     found
 }
 
-/// Blocks (an instrument about a film) of at least three of a person's answers that are all the same, as they were clicked. Where the study has an
-/// instrument with reversed items, only blocks of such instruments count: whoever finds a robot excellent may honestly give the
-/// highest answer to all items that are keyed alike.
+/// Blocks (an instrument about a film) of at least three of a person's answers that are all the same, as they were clicked. Where the
+/// study has an instrument with reversed items, only blocks of such instruments count: whoever finds a robot excellent may honestly give
+/// the highest answer to all items that are keyed alike.
 fn straight(rows: &[&Row], design: &Design) -> usize {
     let mixed = |of: &Instrument| of.scales.iter().flat_map(|scale| &scale.items).any(|item| item.reversed);
     let any_mixed = design.instruments.iter().any(mixed);

@@ -4,7 +4,7 @@ use super::asks::{Block, blocks, checks};
 use super::legend;
 use super::media::{GATE, Media, video};
 use super::orders::orders;
-use super::page::escape;
+use super::page::{escape, paragraphs};
 use super::setup::agreed;
 use crate::design::Design;
 use crate::problem::Problem;
@@ -107,8 +107,7 @@ pub fn limesurvey(design: &Design, media: &Media) -> Result<String, Problem> {
         rows.question("*", "scenario", &draw, &[("hidden", "1".to_owned())]);
     }
     rows.add("G", "", "seen", "", &[("relevance", "1".to_owned())]);
-    let seen: String = legend::paragraphs(design).iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
-    rows.question("X", SEEN, &seen, &[]);
+    rows.question("X", SEEN, &paragraphs(&legend::paragraphs(design)), &[]);
     let mut films: Vec<&crate::rating::Film> = design.films.iter().collect();
     films.sort_by(|a, b| a.id.cmp(&b.id));
     for film in films {

@@ -93,6 +93,11 @@ fn filled(template: &str, values: &[(&str, &str)]) -> String {
     out
 }
 
+/// Texts as paragraphs of HTML.
+pub(super) fn paragraphs(texts: &[String]) -> String {
+    texts.iter().map(|text| format!("<p>{}</p>", escape(text))).collect()
+}
+
 /// Text for HTML.
 #[must_use]
 pub fn escape(text: &str) -> String {

@@ -9,7 +9,7 @@ use super::asks::{Block, Check, blocks, checks};
 use super::legend;
 use super::media::{GATE, Media, video};
 use super::orders::{Order, orders};
-use super::page::escape;
+use super::page::{escape, paragraphs};
 use super::setup::agreed;
 use crate::design::Design;
 use crate::problem::Problem;
@@ -187,7 +187,7 @@ pub fn qsf(design: &Design, media: &Media) -> Result<Qsf, Problem> {
     let checks = checks(design, most)?;
     let id = format!("SV_{}", design.digest.get(..15).unwrap_or_default());
     let mut writer = Writer { id: id.clone(), design, questions: Vec::new(), blocks: Vec::new(), codebook: Vec::new() };
-    let consent: String = agreed(design)?.paragraphs.iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
+    let consent = paragraphs(&agreed(design)?.paragraphs);
     let agrees = writer.question(
         "consent",
         &format!("{consent}<p>If you do not agree, please close this page.</p>"),
@@ -196,7 +196,7 @@ pub fn qsf(design: &Design, media: &Media) -> Result<Qsf, Problem> {
             "Validation": { "Settings": { "ForceResponse": "ON", "ForceResponseType": "ON", "Type": "None" } } }),
     );
     writer.codebook.push(format!("{agrees},ignored,,"));
-    let seen: String = legend::paragraphs(design).iter().map(|part| format!("<p>{}</p>", escape(part))).collect();
+    let seen = paragraphs(&legend::paragraphs(design));
     let seen = writer.question("seen", &seen, "what films show", json!({ "QuestionType": "DB", "Selector": "TB" }));
     let first = writer.block("consent", "Default", &[Some(agrees), None, Some(seen)]);
     let mut films: Vec<(String, String)> = Vec::new();

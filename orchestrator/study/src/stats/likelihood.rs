@@ -59,13 +59,6 @@ fn logistic(x: f64) -> (f64, f64) {
     if x > 0.0 { (far, near) } else { (near, far) }
 }
 
-/// Sums over people.
-struct Total {
-    value: f64,
-    slope: DVector<f64>,
-    bend: DMatrix<f64>,
-}
-
 /// Where a person's likelihood is summed: `v` with the log of the likelihood there, and the ends of each answer, point after point.
 struct Points {
     at: Vec<(f64, f64)>,
@@ -107,15 +100,12 @@ impl Points {
     }
 }
 
-/// Places of a person's variables among all: two for each answer, then effects and `sigma`; none for an end without a threshold.
-struct Places(Vec<Option<usize>>);
-
 impl Observed<'_> {
     /// Minus the log likelihood with its slope and its second derivatives; where not `random`, all intercepts are 0 and no variable
     /// is `sigma`.
     pub(super) fn minus_log_likelihood(&self, at: &DVector<f64>, random: bool) -> Bent {
         let (cuts, n, at) = (self.levels - 1, at.len(), at.as_slice());
-        let mut total = Total { value: 0.0, slope: DVector::zeros(n), bend: DMatrix::zeros(n, n) };
+        let mut total = Bent { value: 0.0, slope: DVector::zeros(n), bend: DMatrix::zeros(n, n) };
         let cut = |level: usize| at.get(level).copied().unwrap_or(f64::INFINITY);
         let sigma = at.last().copied().filter(|_| random).unwrap_or(0.0);
         if sigma.abs() > MOST_SIGMA || (1..cuts).any(|level| cut(level) <= cut(level - 1)) {
@@ -140,17 +130,18 @@ impl Observed<'_> {
         Bent { value: -total.value, slope: -total.slope, bend: -total.bend }
     }
 
-    fn places(&self, answers: &[Answer<'_>], has_sigma: bool) -> Places {
+    /// Places of a person's variables among all: two for each answer, then effects and `sigma`; none for an end without a threshold.
+    fn places(&self, answers: &[Answer<'_>], has_sigma: bool) -> Vec<Option<usize>> {
         let cuts = self.levels - 1;
         let ends = answers.iter().flat_map(|one| [Some(one.level).filter(|at| *at < cuts), one.level.checked_sub(1)]);
-        Places(ends.chain((cuts..cuts + self.columns + usize::from(has_sigma)).map(Some)).collect())
+        ends.chain((cuts..cuts + self.columns + usize::from(has_sigma)).map(Some)).collect()
     }
 
     /// Adds a person: log of the sum of their likelihood over points. With `w` the share of a point in the sum, the slope is the mean of
     /// the slopes by `w`, and the second derivatives are the mean of those at the points and the covariance of the slopes (Louis 1982).
     #[expect(clippy::indexing_slicing, reason = "indices run over the sizes of the arrays that are made here")]
-    fn add(&self, answers: &[Answer<'_>], points: &Points, has_sigma: bool, total: &mut Total) {
-        let places = self.places(answers, has_sigma).0;
+    fn add(&self, answers: &[Answer<'_>], points: &Points, has_sigma: bool, total: &mut Bent) {
+        let places = self.places(answers, has_sigma);
         let (many, size, fixed) = (answers.len(), places.len(), 2 * answers.len());
         let most = points.at.iter().map(|(_, log)| *log).fold(f64::NEG_INFINITY, f64::max);
         let sum: f64 = points.at.iter().map(|(_, log)| libm::exp(log - most)).sum();
