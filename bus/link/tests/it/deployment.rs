@@ -13,6 +13,9 @@ use crate::promises::over_zenoh::free_udp_port;
 /// Seconds of a day.
 pub(crate) const DAY_S: u64 = 24 * 3600;
 
+/// How long somebody who may come in waits until the router answers.
+const PATIENCE: Duration = Duration::from_secs(30);
+
 /// The folders of its keys.
 pub(crate) struct Deployment {
     folder: TempDir,
@@ -52,11 +55,14 @@ impl Deployment {
         (ZenohBus::open(config).await.unwrap(), endpoint)
     }
 
-    /// A guest of this role.
+    /// A guest of this role. It waits long: the router may be busy with what fills its memory.
     pub(crate) async fn guest(&self, role: Role, endpoint: &str) -> ZenohBus {
-        ZenohBus::open(self.guest_config(role, endpoint)).await.unwrap()
+        let mut config = self.guest_config(role, endpoint);
+        config.patience = PATIENCE;
+        ZenohBus::open(config).await.unwrap()
     }
 
+    /// Settings of such a guest that gives up after a second, for those who are refused.
     pub(crate) fn guest_config(&self, role: Role, endpoint: &str) -> ZenohConfig {
         let mut config = ZenohConfig::new(Mode::Client, "t", role.name()).connect(endpoint);
         config.patience = Duration::from_millis(1_000);
@@ -75,6 +81,7 @@ impl Deployment {
         ] {
             config.insert_json5(key, &value).unwrap();
         }
+        config.insert_json5("connect/timeout_ms", &PATIENCE.as_millis().to_string()).unwrap();
         zenoh::open(config).await.unwrap()
     }
 }
