@@ -11,6 +11,7 @@ use super::modules::{EVERYTHING, Module, Named, program};
 const ROOMS: &[&str] = &[
     "bus/stream",
     "maps/edit",
+    "prompts/offline",
     "prompts/reader",
     "workers/authoring",
     "workers/gateway",

@@ -88,7 +88,7 @@ const WORDS: &[&str] =
 const FILES: &[(&str, &str)] = &[
     ("tests/asked/", "requests stand as they were written"),
     ("prompts/offline/", "requests are read however people spell: tables, sentences of tests, corpus"),
-    ("prompts/reader/data/", "the same, of the small reader"),
+    ("prompts/reader/data/", "the same, of the reader"),
     ("tests/house/spelling.rs", "lists them"),
     ("orchestrator/app/src/ask/command.rs", "a person may type `again behaviours`"),
 ];

@@ -112,7 +112,6 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "role ==",
         "the role that the engine gives to people who walk as recorded",
     ),
-    ("prompts/offline/src/story.rs", "notes .contains", "says a note once; the reader of requests is to be replaced"),
     ("workers/simulation/hunav/src/run/prepare.rs", "file .rsplit", "the name of a file becomes that of a run"),
 ];
 

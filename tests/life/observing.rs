@@ -78,11 +78,8 @@ fn lines(file: &Path) -> Vec<Value> {
 fn the_logs_of_a_job_share_a_trace_over_all_processes_and_no_key_stands_in_any_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    std::fs::write(
-        at.join("sing.toml"),
-        WAREHOUSE.replace("follows the robot.\"", "follows the robot. She sings a song.\""),
-    )
-    .unwrap();
+    std::fs::write(at.join("sing.toml"), WAREHOUSE.replace("follows the robot.\"", "follows the robot. She sings.\""))
+        .unwrap();
     let endpoint = format!("unixsock-stream/{}", at.join("bus").display());
     // All that is ever said, also by libraries, in both logs.
     let loud = ["--log", "json", "--set", "log.keep=debug", "--set", "log.filter=debug"];

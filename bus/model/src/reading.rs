@@ -152,11 +152,10 @@ pub enum FactKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ReadBy {
-    /// The grammar of the offline author.
+    /// The reader of the offline author.
     #[default]
+    #[serde(alias = "small")]
     Grammar,
-    /// The small reader of the offline author, whose phrases are rows.
-    Small,
     /// The author, a language model; the grammar was held against what it calls no wish.
     Author,
     /// The author, a language model, in a language that the grammar does not know: nobody held anything against it.

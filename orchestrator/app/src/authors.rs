@@ -10,8 +10,8 @@ use std::time::Duration;
 use socrates_author::{AskError, Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
+use socrates_model::AuthorSpec;
 use socrates_model::job::{BEHAVIORS_BY, BY_PROPOSAL};
-use socrates_model::{AuthorSpec, ReadBy};
 use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
@@ -137,19 +137,6 @@ pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Compla
         "grammar" => Ok(false),
         _ => {
             let what = format!("`author.reading`: `{word}` is unknown; allowed: model, grammar");
-            Err(Complaint::input(what, "`socrates config author` prints the manual"))
-        }
-    }
-}
-
-/// Which of the two readers of the offline author reads the rough scenario, where no model does.
-pub(crate) fn reader(config: &Config) -> Result<ReadBy, Complaint> {
-    let word = config.text("author.reader");
-    match word.as_str() {
-        "grammar" => Ok(ReadBy::Grammar),
-        "small" => Ok(ReadBy::Small),
-        _ => {
-            let what = format!("`author.reader`: `{word}` is unknown; allowed: grammar, small");
             Err(Complaint::input(what, "`socrates config author` prints the manual"))
         }
     }

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use serde_json::json;
 use socrates_kit::{Blobs, LocalBlobs};
 use socrates_link::rules::Role;
-use socrates_model::Digest;
 use socrates_model::wire::{Limits, Priority, ScenarioSpec};
+use socrates_model::{Digest, FaultCode, Statement};
 
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
@@ -133,7 +133,17 @@ pub async fn submit(
 
 /// Wishes that cannot be played, and what else the reading of a request warns of, each with the name of the request.
 fn problems(prepared: &[Prepared]) -> Vec<(&str, String)> {
-    let of = |one: &'_ Prepared| one.reading.problems.iter().map(ToString::to_string).collect::<Vec<_>>();
+    let lost = |one: &Prepared| {
+        let all = one.reading.statements.iter().filter(|statement| statement.is_missing());
+        let text = |statement: &Statement| {
+            format!("{} `{}` {}: {}", FaultCode::PRead.code(), statement.quote, statement.fate(), statement.told())
+        };
+        all.map(text).collect::<Vec<_>>()
+    };
+    let of = |one: &Prepared| {
+        let hard = socrates_model::fault::hard(&one.reading.problems);
+        hard.iter().map(ToString::to_string).chain(lost(one)).collect::<Vec<_>>()
+    };
     prepared.iter().flat_map(|one| of(one).into_iter().map(|problem| (one.name.as_str(), problem))).collect()
 }
 

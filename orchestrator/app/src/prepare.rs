@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 use socrates_export::socrates_json::Imported;
 use socrates_model::request::ServerKind;
 use socrates_model::{
-    AuthorSpec, Breadth, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlannerName, Proposal, ReadBy, Reading,
-    Request, Role, ScenarioId, Seeds,
+    AuthorSpec, Breadth, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlannerName, Proposal, Reading, Request,
+    Role, ScenarioId, Seeds,
 };
 
 use crate::config::Config;
@@ -169,8 +169,8 @@ pub(crate) fn prepare_text(
     }
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
     let pinned = request.proposal.as_ref().map(|file| folder.join(file));
-    let by = if crate::authors::reads(config, &author)? { ReadBy::Author } else { crate::authors::reader(config)? };
-    let reading = read(&request, &location, by, pinned.as_deref());
+    let by_author = crate::authors::reads(config, &author)?;
+    let reading = read(&request, &location, by_author, pinned.as_deref());
     check_reading(&reading, &request, &location, shown)?;
     check_people(&request, &reading, &pins, shown)?;
     // What a language model would read out of the task is not known beforehand.
@@ -220,19 +220,18 @@ pub(crate) fn prepare_text(
     })
 }
 
-/// How the request is read: by the grammar or the small reader, or as far as it is stated where its author reads the texts. A pinned proposal whose author read
-/// them brings its reading along.
-fn read(request: &Request, location: &Location, by: ReadBy, pinned: Option<&Path>) -> Reading {
-    let Some(pinned) = pinned.filter(|_| by.is_author()) else {
-        return match by.is_author() && pinned.is_none() {
-            true => socrates_offline::stated(request, location),
-            false => socrates_offline::read_by(request, location, by),
-        };
+/// How the request is read: by the offline author's reader, or as far as it is stated where its author reads the texts. A pinned proposal
+/// whose author read them brings its reading along.
+fn read(request: &Request, location: &Location, by_author: bool, pinned: Option<&Path>) -> Reading {
+    let kept = |pinned: &Path| {
+        let bytes = std::fs::read(pinned.with_file_name(layout::READING.file_name())).ok()?;
+        serde_json::from_slice::<Reading>(&bytes).ok().filter(|reading| reading.by.is_author())
     };
-    let beside = pinned.with_file_name(layout::READING.file_name());
-    let kept = std::fs::read(beside).ok().and_then(|bytes| serde_json::from_slice::<Reading>(&bytes).ok());
-    let kept = kept.filter(|reading| reading.by.is_author());
-    kept.unwrap_or_else(|| socrates_offline::read_by(request, location, by))
+    match (by_author, pinned) {
+        (false, _) => socrates_offline::read(request, location),
+        (true, None) => socrates_offline::stated(request, location),
+        (true, Some(pinned)) => kept(pinned).unwrap_or_else(|| socrates_offline::read(request, location)),
+    }
 }
 
 /// Refuses a request whose reading says that it cannot be made, with what would settle it.
@@ -242,7 +241,7 @@ fn check_reading(reading: &Reading, request: &Request, location: &Location, show
         return Err(Complaint::faults(
             format!("the request `{shown}` asks for something that cannot be made"),
             &stops,
-            match socrates_offline::settled_by(request, location, reading.by).as_slice() {
+            match socrates_offline::settled_by(request, location).as_slice() {
                 [] => format!("correct the text; `socrates read {}` shows the reading", files::shell(Path::new(shown))),
                 keys => format!(
                     "correct the text, or set {} under [expect]; `socrates read {}` shows the reading",

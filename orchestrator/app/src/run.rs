@@ -40,7 +40,7 @@ pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Resu
 }
 
 /// Prints how a request is read, and runs nothing; with `write`, puts what was read as a form under the text; with `passes`, prints first what
-/// each pass of the small reader makes of the rough scenario, whoever reads it.
+/// each pass of the reader makes of the rough scenario, whoever reads it.
 pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool, passes: bool) -> Result<(), Complaint> {
     let prepared = prepare(request, None, config)?;
     let rough = prepared.request.rough_scenario.as_deref().unwrap_or_default();

@@ -40,7 +40,7 @@ async fn a_song_in_a_shipped_request_is_quoted_and_can_be_waived() {
         let mut sung = Request { rough_scenario: Some(format!("{} {SONG}", rough.trim())), ..request };
         let (found, text) = verdict(&sung, seed).await;
         assert_eq!(found, Verdict::Invalid, "{name}: {text}");
-        assert!(text.starts_with("1 wish is not in this run: ") && text.contains("sings"), "{name}: {text}");
+        assert!(text.contains("not in this run: ") && text.contains("sings"), "{name}: {text}");
 
         sung.waive = vec!["And then somebody sings".to_owned()];
         let (found, text) = verdict(&sung, seed).await;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 use socrates_model::statement::{Became, Statement};
-use socrates_model::{Proposal, Reading};
+use socrates_model::{Clause, ClauseRole, FactKind, Proposal, Reading};
 use socrates_prompts::{Question, Sentence, sentences};
 
 /// A reading whose facts have the ids of those that the question states, and ids that are free where it states none.
@@ -55,7 +55,12 @@ fn share(sentence: &Sentence, reading: &Reading, proposal: &Proposal, told: &mut
         }
         let Some(fact) = reading.facts.iter().find(|fact| fact.id == *id) else { continue };
         told.push(id.clone());
-        let carrier = proposal.expected_events.iter().find(|clause| clause.source == *id);
+        let shows = |clause: &&Clause| clause.source == *id && clause.must && clause.role == ClauseRole::Setup;
+        let carrier = proposal.expected_events.iter().find(shows);
+        // How somebody stands to the robot's way is in their part where no clause shows it.
+        if carrier.is_none() && matches!(fact.kind, FactKind::Relates { .. }) {
+            continue;
+        }
         let of = carrier.map_or_else(
             || "robot".to_owned(),
             |clause| clause.predicate.human().map_or_else(|| "all".to_owned(), |human| human.to_string()),

@@ -1,11 +1,13 @@
 //! The author itself: a question in, an answer as text out.
 
 use serde_json::{Map, Value, json};
-use socrates_model::Proposal;
 use socrates_model::job::Stage;
+use socrates_model::{Location, Proposal, Reading, Request};
 use socrates_prompts::Question;
+use socrates_solver::Miss;
 
-use crate::{NAME, mended, proposal, solve};
+use crate::name::NAME;
+use crate::{mended, proposal, solve};
 
 /// The offline author.
 ///
@@ -79,4 +81,17 @@ fn behaviors(question: &Question, proposal: &Proposal) -> String {
         ("author".to_owned(), json!(NAME)),
     ]));
     text(&answer)
+}
+
+/// Why a request can have no paths on a map, whatever is drawn; nothing where only the author finds that out.
+#[must_use]
+pub fn impossible(request: &Request, reading: &Reading, location: &Location) -> Option<Miss> {
+    let mut question = Question::first(request.clone(), reading.clone(), location.clone(), 0);
+    let mut proposal = proposal::propose(&question);
+    if reading.humans.is_empty() {
+        // Nobody asked for these people: another draw has others.
+        proposal.humans.clear();
+    }
+    question.stage = Stage::Paths;
+    socrates_solver::impossible(&solve::problem(&question, &proposal))
 }

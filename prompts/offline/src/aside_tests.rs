@@ -1,18 +1,13 @@
 //! Bystanders, people who come very close, groups that open, somebody who looks at another, and the way back, as texts say them.
 
 use socrates_model::proposal::WayPart;
-use socrates_model::{Action, FactKind, HumanId, Reading, Relation};
+use socrates_model::{FactKind, Reading, Relation};
 
 use crate::read;
 use crate::tests::{map, request};
 
 fn reading(task: &str, rough: &str) -> Reading {
     read(&request(task, Some(rough)), &map("hospital"))
-}
-
-fn acts(rough: &str) -> Vec<Action> {
-    let humans = reading("Deliver mail", rough).humans;
-    humans.into_iter().flat_map(|human| human.rules).map(|rule| rule.act).collect()
 }
 
 #[test]
@@ -25,18 +20,6 @@ fn a_bystander_stands_aside() {
             reading("Deliver mail", rough).humans.into_iter().filter_map(|human| human.relation).collect();
         assert_eq!(relations, [Relation::Aside, Relation::Frontal], "{rough}");
     }
-}
-
-#[test]
-fn how_close_somebody_comes_and_whom_they_look_at_is_read() {
-    assert_eq!(acts("A child in the corridor walks right up to the robot."), [Action::ApproachTo(0.8)]);
-    let looks =
-        acts("A nurse stands in the corridor. A visitor walks towards the robot, stops and looks at the nurse.");
-    assert!(looks.contains(&Action::LookAt(HumanId::new(1))), "{looks:?}");
-    assert!(
-        acts("Three visitors stand in the corridor and open their circle when the robot is near.")
-            .contains(&Action::MakeRoom)
-    );
 }
 
 #[test]

@@ -3,8 +3,7 @@
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Action, Fault, FaultCode, HumanProposal, PlaceClass, Relation, Rule, Trigger};
 
-use crate::cast::ReadRule;
-use crate::story::Story;
+use crate::story::{ReadRule, Story};
 
 /// Whoever has the robot behind notices it no farther than this, m.
 const BEHIND_M: f64 = 3.0;
@@ -14,21 +13,18 @@ const FACES_M: f64 = 2.5;
 const MET_M: f64 = 2.8;
 /// The robot comes no nearer than this to whoever stands in its way, m.
 const STOPS_BEFORE_M: f64 = 1.1;
-/// Words by which people walk with the robot and against it.
-const BOTH_WAYS: &[&str] = &["both directions", "both ways", "either direction", "opposite directions"];
 /// Who has to get past the robot before it can block it does so for so long at least, s.
 const CATCHES_UP_S: f64 = 20.0;
 /// Where somebody waits for the robot to stop it stops before somebody this near, m, for so long, s.
 const STOPS: (f64, f64) = (4.0, 6.0);
 
 /// Mends what could not come about as it was read; distances that the text says stay as they are.
-pub(crate) fn settle(story: &mut Story, rough: &str) {
-    both_ways(story, rough);
+pub(crate) fn settle(story: &mut Story) {
     let narrow = matches!(story.place, Some((PlaceClass::NarrowPassage, _)));
     impossible(story, narrow);
-    for who in 0..story.cast.people.len() {
+    for who in 0..story.people.len() {
         let relation = story.relation_of(who);
-        let Some(person) = story.cast.people.get_mut(who) else { continue };
+        let Some(person) = story.people.get_mut(who) else { continue };
         for at in 0..person.rules.len() {
             let Some(read) = person.rules.get(at).filter(|read| !read.exact) else { continue };
             let before = read.rule.when.clone();
@@ -61,52 +57,13 @@ pub(crate) fn settle(story: &mut Story, rough: &str) {
             }
         }
         lets_pass_last(&mut person.rules);
-        // `stands still while it moves and walks towards it when it stops`: it stands there, and comes up to it then.
-        let towards = |read: &ReadRule| {
-            let quote = read.quote.to_lowercase();
-            read.rule.when == [Trigger::RobotStopped]
-                && (read.rule.act == Action::Approach
-                    || ["toward", "up to", "closer", "nearer"].iter().any(|words| quote.contains(words)))
-        };
-        if relation == Some(Relation::Frontal)
-            && person.rules.iter().any(towards)
-            && alternates(person.rules.iter().map(|read| &read.rule))
-        {
-            if let Some((relation, _)) = &mut person.relation {
-                *relation = Relation::Static;
-            }
-            for read in person.rules.iter_mut().filter(|read| read.rule.when == [Trigger::RobotStopped]) {
-                read.rule.act = Action::Approach;
-            }
-        }
     }
-}
-
-/// `Twelve visitors walk in both directions`: every other one comes towards the robot, the others walk ahead of it.
-fn both_ways(story: &mut Story, rough: &str) {
-    let lower = rough.to_lowercase();
-    let Some(words) = BOTH_WAYS.iter().find(|words| lower.contains(*words)) else { return };
-    let people = &mut story.cast.people;
-    let walks = |person: &&mut crate::cast::Person| {
-        let idle = person.relation.is_none() && person.group.is_none() && person.rules.is_empty();
-        idle && !person.doings.is_empty() && person.doings.iter().all(|doing| doing == "walks")
-    };
-    let walkers: Vec<_> = people.iter_mut().filter(walks).collect();
-    if walkers.len() < 2 {
-        return;
-    }
-    for (person, towards) in walkers.into_iter().zip([true, false].into_iter().cycle()) {
-        let relation = if towards { Relation::Frontal } else { Relation::Ahead };
-        person.relation = Some((relation, (*words).to_owned()));
-        person.doings.push(if towards { "comes towards the robot" } else { "walks ahead of the robot" }.to_owned());
-    }
-    story.ignored.retain(|word| !words.contains(word.as_str()));
 }
 
 /// Says before the run what cannot come about in it.
 fn impossible(story: &mut Story, narrow: bool) {
     let mut said = Vec::new();
-    let people = &story.cast.people;
+    let people = &story.people;
     for person in people {
         let blocks = person.rules.iter().any(|read| read.rule.act == Action::Block);
         let touches = |read: &&ReadRule| {
@@ -198,49 +155,6 @@ mod tests {
         let (_, proposal, _) = answers(&request("Drive to the packing area", Some(rough)), &map("warehouse"), 1);
         let rules = &proposal.humans[0].rules;
         assert!(rules.iter().any(|rule| rule.when == [Trigger::RobotNear(BEHIND_M)]), "{rules:?}");
-    }
-
-    #[test]
-    fn the_robot_stops_where_somebody_waits_for_that() {
-        let rough = "While the robot is moving, the guard stands still. Whenever the robot stops, the guard walks a few \
-                     steps towards it.";
-        let (_, proposal, paths) = answers(&request("Patrol the aisles", Some(rough)), &map("warehouse"), 1);
-        assert!(proposal.robot.script.iter().any(|line| matches!(line.act, RobotDo::Hold(_))));
-        assert_eq!(proposal.humans[0].relation, Relation::Static);
-        assert_eq!(paths.humans.values().next().map(Vec::len), Some(1));
-    }
-
-    #[test]
-    fn what_cannot_come_about_is_said_before_the_run() {
-        for (rough, on, words) in [
-            (
-                "A child stops in front of the robot and runs away when the robot comes closer than one metre.",
-                "hospital",
-                "closer than one metre",
-            ),
-            (
-                "A group of three workers stands in the narrow aisle. When the robot says excuse me, they step aside.",
-                "warehouse",
-                "step aside",
-            ),
-        ] {
-            let reading = crate::read(&request("Drive on", Some(rough)), &map(on));
-            let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.to_string().contains(words);
-            assert!(reading.problems.iter().any(said), "{:#?}", reading.problems);
-        }
-    }
-
-    #[test]
-    fn of_people_who_walk_in_both_directions_every_other_one_comes_towards_the_robot() {
-        let rough = "Twelve visitors walk in both directions along the main corridor.";
-        let reading = crate::read(&request("Drive to the exit", Some(rough)), &map("hospital"));
-        let of = |relation| reading.humans.iter().filter(|human| human.relation == Some(relation)).count();
-        assert_eq!((of(Relation::Frontal), of(Relation::Ahead)), (6, 6));
-        assert!(
-            !crate::tests::loose(&reading).contains(&"directions".to_owned()),
-            "{:?}",
-            crate::tests::loose(&reading)
-        );
     }
 
     #[test]

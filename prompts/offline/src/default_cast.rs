@@ -2,12 +2,11 @@
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::{GroupId, HumanId, Location, Reading, Request};
+use socrates_reader::Reader;
 
 use crate::card::{Card, card, catalog};
 use crate::draw::Draw;
-use crate::lexicon::lexicon;
-use crate::story::Story;
-use crate::understand::Extra;
+use crate::story::{Extra, Story};
 
 /// Fills the reading with the people of its pattern, as few as the card allows.
 pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, location: &Location) -> Vec<Extra> {
@@ -17,7 +16,7 @@ pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, loca
     reading.notes.push(format!("the text names no people; the pattern `{}` says who is there", card.id));
     let (humans, extras) = people(card, &mut Draw::new(0, "reading"), request);
     reading.humans = humans;
-    if story.cast.groups.is_empty() && card.roles.iter().any(|role| role.group) && reading.humans.len() > 1 {
+    if story.groups.is_empty() && card.roles.iter().any(|role| role.group) && reading.humans.len() > 1 {
         reading.notes.push("they form a group".to_owned());
     }
     extras
@@ -26,7 +25,7 @@ pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, loca
 /// The people of a card: as many as are expected, else a number drawn from the card's ranges.
 pub(crate) fn people(card: &Card, draw: &mut Draw, request: &Request) -> (Vec<ReadHuman>, Vec<Extra>) {
     let total = request.expect.headcount();
-    let context = crate::pattern::role_of(&request.social_context);
+    let context = Reader::shipped().scene(&request.social_context).role;
     let mut counts: Vec<u32> = card
         .roles
         .iter()
@@ -106,7 +105,7 @@ pub(crate) fn unguided(task: &str, location: &Location, draw: &mut Draw) -> Opti
     let verbs: Vec<String> = task
         .split(|letter: char| !letter.is_alphabetic())
         .filter(|word| !word.is_empty())
-        .map(|word| lexicon().stem(&word.to_lowercase()))
+        .map(|word| Reader::shipped().base(&word.to_lowercase()))
         .collect();
     let meant: Vec<&'static Card> =
         fitting.iter().copied().filter(|card| card.tasks.iter().any(|task| verbs.contains(task))).collect();

@@ -1,33 +1,22 @@
 //! Edits in words: what stands, and a sentence; what is not spoken of stays as it is.
 //!
-//! A sentence is cut into clauses. What changes paths, speeds or who is there is told by a few words of its own
-//! (`edit_wish`); everything else is read by the grammar of requests, with the people of the proposal as those of whom was
-//! spoken already, and what it says of them replaces what they did.
+//! What changes paths, speeds or who is there is told by a few words of its own (rows of the reader); everything else is read as the
+//! text of a request is, with the people of the proposal as those of whom was spoken already, and what it says of them replaces what
+//! they did.
 
 use socrates_model::job::Stage;
-use socrates_model::{Behaviors, Fault, FaultCode, Paths, Proposal, Reading};
+use socrates_model::{Behaviors, Fault, Proposal, Reading};
 use socrates_prompts::Question;
+use socrates_reader::Edit;
 
+use crate::desk::{Desk, Draft};
 use crate::edit_whom::Crowd;
-use crate::edit_wish::{Kind, Wish, wishes};
+use crate::edit_wish::{Wish, wishes};
 use crate::{edit_paths, edit_people, edit_settle, edit_together};
 
-/// What can be said, for those whose words were not understood.
-const SAYABLE: &str = "what can be said: make a path longer or shorter, reverse it, start or end it somewhere, avoid a place, move \
-                       the meeting to another place; add, remove, slow down or speed up somebody; let two swap places; \
-                       make some a group or break it up; what somebody does, when, how long and how near; add, change or \
-                       remove a gesture";
-
-/// What there is to edit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Draft {
-    /// The proposal as it stands.
-    pub proposal: Proposal,
-    /// The paths, if there are any yet.
-    pub paths: Option<Paths>,
-    /// The behaviors, if there are any yet.
-    pub behaviors: Option<Behaviors>,
-}
+/// Whoever should be slower, or faster, walks at so much of their speed.
+const SLOWER: f64 = 0.7;
+const FASTER: f64 = 1.35;
 
 /// What became of an edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,43 +61,15 @@ pub fn settled(question: &Question, before: &Draft, proposal: Proposal, changed:
     desk.finish(before, &question.reading)
 }
 
-/// The artifacts while they are being edited.
-pub(crate) struct Desk {
-    pub(crate) question: Question,
-    pub(crate) draft: Draft,
-    pub(crate) done: Vec<String>,
-    pub(crate) left_out: Vec<String>,
-    pub(crate) not_done: Vec<Fault>,
-    /// Humans whose part changed, by place in the proposal.
-    pub(crate) changed: Vec<usize>,
-}
-
 impl Desk {
-    fn of(question: &Question, draft: &Draft) -> Self {
-        Self {
-            question: Question {
-                stage: Stage::Paths,
-                feedback: Vec::new(),
-                refused: None,
-                only: Vec::new(),
-                ..question.clone()
-            },
-            draft: draft.clone(),
-            done: Vec::new(),
-            left_out: Vec::new(),
-            not_done: Vec::new(),
-            changed: Vec::new(),
-        }
-    }
-
     /// Does a wish, or nothing of it: what is said to be done is done, and for what is not nothing was changed.
     fn grant(&mut self, wish: &Wish, crowd: &mut Crowd) {
-        let before = (self.draft.clone(), self.question.clone(), self.changed.clone(), crowd.cast.clone());
+        let before = (self.draft.clone(), self.question.clone(), self.changed.clone(), crowd.clone());
         let (done, left_out, refused) = (self.done.len(), self.left_out.len(), self.not_done.len());
         self.try_wish(wish, crowd);
         let did = self.done.len() > done;
         if did && self.not_done.len() > refused {
-            (self.draft, self.question, self.changed, crowd.cast) = before;
+            (self.draft, self.question, self.changed, *crowd) = before;
             self.done.truncate(done);
             self.left_out.truncate(left_out);
         } else if !did {
@@ -122,37 +83,19 @@ impl Desk {
         if crowd.is_guess(wish) {
             return self.refuse(&wish.quote, "does not say which of those who are there is meant");
         }
-        match wish.kind {
-            Kind::Longer | Kind::Shorter | Kind::Reverse | Kind::Avoid | Kind::Start | Kind::End | Kind::Move => {
+        match wish.edit {
+            Edit::Longer | Edit::Shorter | Edit::Reverse | Edit::Avoid | Edit::Start | Edit::End | Edit::Move => {
                 edit_paths::grant(self, wish, crowd);
             }
-            Kind::Remove => edit_people::remove(self, wish, crowd),
-            Kind::Pace(factor) => edit_people::pace(self, wish, crowd, factor),
-            Kind::NoGestures => edit_people::no_gestures(self, wish, crowd),
-            Kind::Ungroup => edit_people::ungroup(self, wish),
-            Kind::Group => edit_together::group(self, wish, crowd),
-            Kind::Swap => edit_together::swap(self, wish, crowd),
-            Kind::Gesture => edit_together::gesture(self, wish, crowd),
-            Kind::Story => edit_people::story(self, wish, crowd),
-        }
-    }
-
-    /// Says that something was not done.
-    pub(crate) fn refuse(&mut self, quote: &str, why: &str) {
-        let message = format!("`{}` {why}; nothing was changed for it; {SAYABLE}", quote.trim());
-        self.not_done.push(Fault::new(FaultCode::PRead, "edit", message));
-    }
-
-    /// Says that the map has no such place.
-    pub(crate) fn no_place(&mut self, quote: &str, why: &str) {
-        let message = format!("`{}` {why}; it has: {}", quote.trim(), crate::place::listed(&self.question.location));
-        self.not_done.push(Fault::new(FaultCode::PPlace, "edit", message));
-    }
-
-    /// Remembers that somebody's part changed.
-    pub(crate) fn touch(&mut self, who: usize) {
-        if !self.changed.contains(&who) {
-            self.changed.push(who);
+            Edit::Remove => edit_people::remove(self, wish, crowd),
+            Edit::Slower => edit_people::pace(self, wish, crowd, SLOWER),
+            Edit::Faster => edit_people::pace(self, wish, crowd, FASTER),
+            Edit::NoGestures => edit_people::no_gestures(self, wish, crowd),
+            Edit::Ungroup => edit_people::ungroup(self, wish),
+            Edit::Group => edit_together::group(self, wish, crowd),
+            Edit::Swap => edit_together::swap(self, wish, crowd),
+            Edit::Gesture => edit_together::gesture(self, wish, crowd),
+            Edit::Story => edit_people::story(self, wish, crowd),
         }
     }
 

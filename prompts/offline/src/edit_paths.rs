@@ -2,13 +2,14 @@
 
 use socrates_model::{AgentId, Encounter, Fault, FaultCode, HumanId, Location, NodeId, Paths, PlaceClass, Relation};
 use socrates_prompts::Question;
+use socrates_reader::Edit;
 use socrates_solver::Ends;
 use socrates_solver::edit::{Change, changed, joined};
 
 use crate::card::card;
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_whom::{Crowd, Whom};
-use crate::edit_wish::{Kind, Wish};
+use crate::edit_wish::Wish;
 use crate::{place, solve, spot};
 
 /// A path gets longer or shorter by so much where the edit does not say, m.
@@ -21,11 +22,11 @@ pub(crate) fn grant(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     let Some(paths) = desk.draft.paths.clone() else {
         return desk.refuse(&wish.quote, "speaks of paths, and there are none yet");
     };
-    if wish.kind == Kind::Move {
+    if wish.edit == Edit::Move {
         return moved(desk, wish, &paths);
     }
     let location = desk.question.location.clone();
-    if wish.kind == Kind::Reverse {
+    if wish.edit == Edit::Reverse {
         return reverse(desk, wish, &paths);
     }
     let people = match crowd.whom(wish) {
@@ -58,11 +59,11 @@ pub(crate) fn grant(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         return;
     }
     socrates_solver::edit::sort(&mut new);
-    if let (Kind::Start | Kind::End, Some(class)) = (wish.kind, wish.place)
+    if let (Edit::Start | Edit::End, Some(class)) = (wish.edit, wish.place)
         && new.robot != paths.robot
     {
         let robot = &mut desk.draft.proposal.robot;
-        *(if wish.kind == Kind::Start { &mut robot.start } else { &mut robot.goal }) = Some(class);
+        *(if wish.edit == Edit::Start { &mut robot.start } else { &mut robot.goal }) = Some(class);
     }
     desk.draft.paths = Some(new);
     desk.done.extend(done);
@@ -75,30 +76,31 @@ fn listed(nodes: &[NodeId]) -> String {
 /// What becomes of one way.
 fn change(wish: &Wish, location: &Location) -> Result<Change, String> {
     let by = wish.meters.unwrap_or(STEP_M);
-    match wish.kind {
-        Kind::Longer => Ok(Change::Longer(by)),
-        Kind::Shorter => Ok(Change::Shorter(by)),
-        Kind::Avoid => targets(wish, location).map(Change::Avoid),
-        Kind::Start => targets(wish, location).map(Change::Start),
-        Kind::End => targets(wish, location).map(Change::End),
-        Kind::Reverse
-        | Kind::Move
-        | Kind::Remove
-        | Kind::Pace(_)
-        | Kind::NoGestures
-        | Kind::Ungroup
-        | Kind::Group
-        | Kind::Swap
-        | Kind::Gesture
-        | Kind::Story => Err("it is no change of one way".to_owned()),
+    match wish.edit {
+        Edit::Longer => Ok(Change::Longer(by)),
+        Edit::Shorter => Ok(Change::Shorter(by)),
+        Edit::Avoid => targets(wish, location).map(Change::Avoid),
+        Edit::Start => targets(wish, location).map(Change::Start),
+        Edit::End => targets(wish, location).map(Change::End),
+        Edit::Reverse
+        | Edit::Move
+        | Edit::Remove
+        | Edit::Slower
+        | Edit::Faster
+        | Edit::NoGestures
+        | Edit::Ungroup
+        | Edit::Group
+        | Edit::Swap
+        | Edit::Gesture
+        | Edit::Story => Err("it is no change of one way".to_owned()),
     }
 }
 
 /// Nodes that the wish names, by id or by class of place.
 fn targets(wish: &Wish, location: &Location) -> Result<Vec<NodeId>, String> {
     let graph = &location.graph;
-    let known = |name: &String| graph.nodes().iter().find(|node| node.id.as_str() == name.as_str());
-    let named: Vec<NodeId> = wish.names.iter().filter_map(known).map(|node| node.id.clone()).collect();
+    let known = |name: &str| graph.nodes().iter().find(|node| node.id.as_str() == name);
+    let named: Vec<NodeId> = wish.names().filter_map(known).map(|node| node.id.clone()).collect();
     if !named.is_empty() {
         return Ok(named);
     }
@@ -159,7 +161,7 @@ fn moved(desk: &mut Desk, wish: &Wish, paths: &Paths) {
         .graph
         .nodes()
         .iter()
-        .filter(|node| wish.names.iter().any(|name| *name == node.id.as_str()))
+        .filter(|node| wish.names().any(|name| name == node.id.as_str()))
         .map(|node| node.id.clone())
         .collect();
     if let Some(meant) = spot::named_in(&location, &wish.quote, class).filter(|_| named.is_empty()) {

@@ -5,53 +5,41 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use socrates_model::rule::RobotDo;
 use socrates_model::{
-    Action, AgentId, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Payload, Predicate,
-    Proposal, Relation, Rule, Trigger,
+    Action, AgentId, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Predicate, Proposal,
+    Relation, Rule, Trigger,
 };
+use socrates_reader::{Fate, Read, Reader};
 
-use crate::cast::{Cast, Person, ReadRule};
-use crate::deed::manner;
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_paths;
-use crate::edit_whom::{Crowd, Whom, person};
+use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;
-use crate::lexicon::Act;
-use crate::mention::{Who, mentions};
-use crate::story::{Story, read_on};
-use crate::{place, prose};
+use crate::story::{ReadRule, Story};
+use crate::{manner, place, prose, told};
 
 /// Desired speed of somebody who has none of its own, m/s.
 const USUAL_MPS: f64 = 1.2;
 
-/// What the grammar of requests reads: new people, and what somebody does now.
+/// New people, and what somebody does now.
 pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
-    let old = desk.draft.proposal.humans.len();
-    let mut clauses = wish.clauses.clone();
-    let adds = adds(&mut clauses);
-    let mut cast = crowd.cast.clone();
-    for person in &mut cast.people {
-        *person = Person { role: person.role.clone(), group: person.group, bound: true, ..Person::default() };
-    }
-    let before = Story { cast, ..Story::default() };
-    let mut read = read_on(before, vec![clauses], &quoted(wish));
-    read.problems.retain(|fault| fault.payload != Some(Payload::TriggerAlone));
-    if read.cast.people.len() > old && !adds {
+    let old = crowd.len();
+    let said = crowd.read(wish);
+    let unread = unread(&said, &wish.quote);
+    let mut read = told::told(&wish.quote, &said);
+    if read.people.len() > old && !wish.adds {
         return desk.refuse(&wish.quote, "does not say which of those who are there is meant");
     }
     for fault in std::mem::take(&mut read.problems) {
         desk.refuse(&wish.quote, &format!("is not clear: {}", fault.message));
     }
-    let ignored: Vec<&String> =
-        read.ignored.iter().filter(|word| COURTESY.split(' ').all(|known| known != word.as_str())).collect();
-    if !ignored.is_empty() {
-        let listed: Vec<&str> = ignored.iter().map(|word| word.as_str()).collect();
-        desk.left_out.push(listed.join(" "));
+    if !unread.is_empty() {
+        desk.left_out.push(unread.join(" "));
     }
     let mut did = false;
     for who in 0..old {
         did |= changed(desk, who, &read, wish);
     }
-    for who in old..read.cast.people.len() {
+    for who in old..read.people.len() {
         did |= joins(desk, who, &read, wish);
     }
     for (gesture, _) in &read.robot_says {
@@ -67,58 +55,35 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         }
         did = true;
     }
-    let new: Vec<(GroupId, Vec<usize>)> =
-        read.cast.groups.iter().map(|(id, members, _)| (*id, members.clone())).collect();
+    let new: Vec<(GroupId, Vec<usize>)> = read.groups.iter().map(|group| (group.id, group.members.clone())).collect();
     for (_, members) in new {
         did |= group(desk, &members);
     }
-    let mut cast = Cast::known(desk.draft.proposal.humans.iter().map(person).collect());
-    cast.last.clone_from(&read.cast.last);
-    crowd.cast = cast;
-    if !did && desk.not_done.is_empty() && ignored.is_empty() {
-        desk.refuse(&wish.quote, "was not understood as a change");
+    let there = desk.draft.proposal.humans.len();
+    let last = match crowd.whom(wish) {
+        Whom::People(people) => people,
+        Whom::Robot | Whom::Unsaid => (old..there).collect(),
+    };
+    crowd.now(&desk.draft.proposal, last);
+    if !did && desk.not_done.is_empty() && unread.is_empty() {
+        desk.refuse(&wish.quote, "was not understood");
     }
 }
 
-/// Words of those who ask for something, which ask for nothing by themselves.
-const COURTESY: &str = "please instead add additional include change edit would like want rather yet keep okay";
-
-fn quoted(wish: &Wish) -> String {
-    // Words know their place in the whole text; blanks keep them there.
-    let from = wish.clauses.first().and_then(|clause| clause.words.first()).map_or(0, |word| word.from);
-    format!("{}{}", " ".repeat(from), wish.quote)
-}
-
-/// Whether somebody new is spoken of; words that only ask are taken as read.
-fn adds(clauses: &mut [crate::cut::Stretch]) -> bool {
-    let mut adds = false;
-    for (number, clause) in clauses.iter_mut().enumerate() {
-        for word in &mut clause.words {
-            if matches!(
-                word.text.as_str(),
-                "add" | "include" | "insert" | "another" | "additional" | "extra" | "more" | "new"
-            ) {
-                adds = true;
-                word.used = true;
-            }
-        }
-        let first = mentions(&clause.words).into_iter().next();
-        adds |= number == 0
-            && first.is_some_and(|mention| {
-                matches!(mention.who, Who::New { article: true, .. } | Who::Further(_) | Who::More(_))
-            });
-    }
-    adds
+/// Words of which the reader made nothing, or nothing that is played.
+fn unread<'a>(said: &Read, text: &'a str) -> Vec<&'a str> {
+    let lost = said.pieces.iter().filter(|piece| matches!(piece.fate, Fate::NotRead | Fate::NotPlayed(_)));
+    lost.filter_map(|piece| text.get(piece.at.clone())).collect()
 }
 
 /// What the edit says of somebody who is there already.
 fn changed(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
-    let (Some(said), Some(human)) = (read.cast.people.get(who), desk.draft.proposal.humans.get(who).cloned()) else {
+    let (Some(said), Some(human)) = (read.people.get(who), desk.draft.proposal.humans.get(who).cloned()) else {
         return false;
     };
     let mut new = human.clone();
     for (act, _) in &said.never {
-        let words = prose_of(*act);
+        let words = manner::actions(*act);
         new.rules.retain(|rule| !words.iter().any(|other| same_act(&rule.act, other)));
     }
     for rule in &said.rules {
@@ -152,13 +117,6 @@ fn changed(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
     let text = prose::behavior(&new.role, new.relation, place, new.start, &new.rules, new.group.is_some());
     desk.done.push(format!("{id}: {text}"));
     true
-}
-
-/// The actions that an act of the text stands for: of somebody who is there, `stands` and `stays` are `stops`.
-fn prose_of(act: Act) -> Vec<Action> {
-    let still = matches!(act, Act::Stand | Act::Stay).then_some(Action::StandStill);
-    let also = (act == Act::Follow).then_some(Action::FollowHuman(HumanId::new(1)));
-    still.into_iter().chain(manner(act).map(|(action, ..)| action)).chain(also).collect()
 }
 
 pub(crate) fn same_act(a: &Action, b: &Action) -> bool {
@@ -196,7 +154,7 @@ fn put(rules: &mut Vec<Rule>, read: &ReadRule) {
 
 /// Somebody new.
 fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
-    let Some(said) = read.cast.people.get(who) else { return false };
+    let Some(said) = read.people.get(who) else { return false };
     let number = u32::try_from(desk.draft.proposal.humans.len() + 1).unwrap_or(u32::MAX);
     if number > socrates_model::request::MAX_HUMANS {
         desk.refuse(&wish.quote, &format!("asks for more than {} humans", socrates_model::request::MAX_HUMANS));
@@ -208,7 +166,8 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
         return false;
     }
     let waits = said.rules.iter().all(|read| read.rule.act == Action::StandStill && !read.stated);
-    let at_place = class.is_some() && waits && said.relation.is_none();
+    let stands = said.relation.as_ref().is_none_or(|(relation, _)| *relation == Relation::Static);
+    let at_place = class.is_some() && waits && stands;
     let relation = if at_place { Relation::Static } else { read.relation_of(who).unwrap_or(Relation::Frontal) };
     // Somebody who only waits somewhere stands there all the time.
     let rules: Vec<Rule> = if relation == Relation::Static && waits {
@@ -228,7 +187,7 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
         facing: None,
         rules,
         group: None,
-        speed_mps: said.speed_mps,
+        speed_mps: said.speed_mps.or_else(|| Reader::shipped().pace_of(&said.role)),
         start: said.start,
         goal: None,
     };
@@ -314,7 +273,7 @@ pub(crate) fn pace(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd, factor: f64)
     let people = match crowd.whom(wish) {
         Whom::People(people) => people,
         Whom::Robot => return desk.refuse(&wish.quote, "speaks of the robot, whose speed is that of its model"),
-        Whom::Unsaid if crowd.cast.people.len() == 1 => vec![0],
+        Whom::Unsaid if crowd.len() == 1 => vec![0],
         Whom::Unsaid => return desk.refuse(&wish.quote, "does not say who"),
     };
     let mut did = false;
@@ -337,7 +296,8 @@ pub(crate) fn pace(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd, factor: f64)
 
 /// Nobody gestures any more, or only these do not.
 pub(crate) fn no_gestures(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
-    let whom = crowd.whom(wish);
+    // `remove all gestures` speaks of nobody in particular.
+    let whom = if wish.everybody { Whom::Unsaid } else { crowd.whom(wish) };
     let count = desk.draft.proposal.humans.len();
     let people = if let Whom::People(people) = &whom { people.clone() } else { (0..count).collect() };
     let mut did = false;
@@ -414,8 +374,7 @@ pub(crate) fn ungroup(desk: &mut Desk, wish: &Wish) {
 
 /// Somebody leaves the scenario.
 pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
-    let grouped = wish.clauses.iter().flat_map(|clause| &clause.words).any(|word| word.stem == "group");
-    let mut out = if grouped {
+    let mut out = if wish.group {
         let humans = desk.draft.proposal.humans.iter().enumerate();
         humans.filter(|(_, human)| human.group.is_some()).map(|(place, _)| place).collect()
     } else {
@@ -475,7 +434,7 @@ pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     renumber(desk, &gone);
     let named: Vec<String> = gone.iter().map(HumanId::to_string).collect();
     desk.done.push(format!("{} left; those behind are numbered anew", named.join(" and ")));
-    crowd.cast = Crowd::of(&desk.draft.proposal).cast;
+    *crowd = Crowd::of(&desk.draft.proposal);
 }
 
 /// `human_3` is `human_2` where the second has left.

@@ -6,7 +6,7 @@ use socrates_model::{
     Action, Clause, ClauseRole, Fact, FactKind, HumanId, HumanProposal, Predicate, Proposal, Reading,
 };
 
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_people::{next_id, same_act};
 use crate::{events, named_way, proposal, prose};
 

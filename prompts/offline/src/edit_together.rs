@@ -3,7 +3,7 @@
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Action, FactKind, Gesture, HumanId, Rule, Trigger};
 
-use crate::edit::Desk;
+use crate::desk::Desk;
 use crate::edit_people;
 use crate::edit_whom::{Crowd, Whom};
 use crate::edit_wish::Wish;
@@ -15,28 +15,8 @@ const NEAR_M: f64 = 4.0;
 const SHOWN_S: f64 = 4.0;
 const STANDS_S: f64 = 6.0;
 
-/// Those whom the words name by their ids: `human_1 and human 3`.
-fn by_id(desk: &Desk, quote: &str) -> Vec<usize> {
-    let lower = quote.to_lowercase();
-    let named = lower.split("human").skip(1).filter_map(|rest| {
-        let digits: String = rest.trim_start_matches(['_', ' ']).chars().take_while(char::is_ascii_digit).collect();
-        digits.parse::<u32>().ok()
-    });
-    let place = |number: u32| desk.draft.proposal.humans.iter().position(|human| human.id.number() == number);
-    let mut found: Vec<usize> = Vec::new();
-    for who in named.filter_map(place) {
-        if !found.contains(&who) {
-            found.push(who);
-        }
-    }
-    found
-}
-
 /// Exactly two of those who are there.
 fn two(desk: &Desk, wish: &Wish, crowd: &mut Crowd) -> Option<(usize, usize)> {
-    if let [a, b] = by_id(desk, &wish.quote)[..] {
-        return Some((a, b));
-    }
     let there = desk.draft.proposal.humans.len();
     match crowd.whom(wish) {
         Whom::People(people) => match people.as_slice() {
@@ -117,19 +97,9 @@ pub(crate) fn swap(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
 /// Some of those who are there form a group: they go, or stand, as the first of them does.
 pub(crate) fn group(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     let there: Vec<usize> = (0..desk.draft.proposal.humans.len()).collect();
-    let all = wish.clauses.iter().flat_map(|clause| &clause.words);
-    let all =
-        all.into_iter().any(|word| matches!(word.text.as_str(), "them" | "all" | "everybody" | "everyone" | "both"));
-    // The word for the group itself means none of them.
-    let mut of_whom = wish.clone();
-    for clause in &mut of_whom.clauses {
-        clause.words.retain(|word| !matches!(word.text.as_str(), "group" | "a" | "one" | "into" | "form"));
-    }
-    let ids = by_id(desk, &wish.quote);
-    let whom = if ids.len() > 1 { Whom::People(ids) } else { crowd.whom(&of_whom) };
-    let members = match whom {
+    let members = match crowd.whom(wish) {
         Whom::People(people) if people.len() > 1 => people,
-        Whom::People(_) | Whom::Unsaid if all && there.len() > 1 => there,
+        Whom::People(_) | Whom::Unsaid if wish.everybody && there.len() > 1 => there,
         Whom::People(_) | Whom::Unsaid | Whom::Robot => {
             return desk.refuse(&wish.quote, "does not say which of those who are there form a group");
         }
@@ -167,8 +137,7 @@ fn named(quote: &str) -> Vec<Gesture> {
 /// A gesture more, or another one instead.
 pub(crate) fn gesture(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     let gestures = named(&wish.quote);
-    let words = || wish.clauses.iter().flat_map(|clause| &clause.words);
-    let adds = words().any(|word| matches!(word.stem.as_str(), "add" | "give" | "additional" | "another"));
+    let adds = wish.adds;
     let (old, new) = match gestures.as_slice() {
         [new] => (None, *new),
         [old, new] if !adds => (Some(*old), *new),

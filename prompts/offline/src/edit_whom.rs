@@ -1,15 +1,15 @@
 //! The people that an edit speaks of, among the people of a scenario.
 
-use socrates_model::{HumanProposal, Proposal};
+use socrates_model::Proposal;
+use socrates_reader::{Read, Reader};
 
-use crate::cast::{Cast, Person, plain};
 use crate::edit_wish::Wish;
-use crate::lexicon::lexicon;
-use crate::mention::{Mention, Who, mentions};
 
-/// The people as the grammar knows them.
+/// The people of a scenario by their roles, and those of whom an edit spoke last.
+#[derive(Clone)]
 pub(crate) struct Crowd {
-    pub(crate) cast: Cast,
+    roles: Vec<String>,
+    last: Vec<usize>,
 }
 
 /// The people that an edit speaks of.
@@ -22,61 +22,39 @@ pub(crate) enum Whom {
 
 impl Crowd {
     pub(crate) fn of(proposal: &Proposal) -> Self {
-        Self { cast: Cast::known(proposal.humans.iter().map(person).collect()) }
+        Self { roles: proposal.humans.iter().map(|human| human.role.clone()).collect(), last: Vec::new() }
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.roles.len()
+    }
+
+    /// The same people as they are now; those of whom was spoken last are these.
+    pub(crate) fn now(&mut self, proposal: &Proposal, last: Vec<usize>) {
+        *self = Self { last, ..Self::of(proposal) };
     }
 
     /// Whether words speak of one of several as a man or a woman, and nobody is called so: then it is anybody's guess who is meant.
     pub(crate) fn is_guess(&self, wish: &Wish) -> bool {
-        let called = |role: &str| self.cast.people.iter().any(|person| person.role == role);
-        let one = |mention: &Mention| {
-            let role = mention.role.as_deref().filter(|role| plain(role));
-            matches!(mention.who, Who::Definite { plural: false, .. }) && role.is_some_and(|role| !called(role))
-        };
-        self.cast.people.len() > 1 && wish.clauses.iter().any(|clause| mentions(&clause.words).iter().any(one))
+        Reader::shipped().whom(&wish.quote, &self.roles, &self.last).guess
     }
 
     /// The people that the words mean; those who are not there are nobody.
     pub(crate) fn whom(&mut self, wish: &Wish) -> Whom {
-        let mut found = Vec::new();
-        let mut robot = false;
-        for clause in &wish.clauses {
-            robot |= clause.words.iter().any(|word| {
-                matches!(word.text.as_str(), "robot" | "robots" | "robot's" | "amr" | "agv")
-                    || word.stem == "robot" && word.text == "its"
-            });
-            for mention in mentions(&clause.words) {
-                let before = self.cast.clone();
-                let some = self.cast.resolve(&mention, false, "");
-                if self.cast.people.len() > before.people.len() {
-                    self.cast = before;
-                    continue;
-                }
-                if !some.is_empty() {
-                    self.cast.last.clone_from(&some);
-                }
-                found.extend(some.into_iter().filter(|i| !found.contains(i)).collect::<Vec<_>>());
-            }
+        let found = Reader::shipped().whom(&wish.quote, &self.roles, &self.last);
+        if !found.people.is_empty() {
+            self.last.clone_from(&found.people);
         }
-        let pronoun = wish.clauses.iter().flat_map(|clause| &clause.words);
-        let pronoun =
-            pronoun.clone().any(|word| matches!(word.text.as_str(), "her" | "his" | "him" | "their" | "them"));
-        if found.is_empty() && !robot && pronoun {
-            found.clone_from(&self.cast.last);
-        }
-        match (found.is_empty(), robot) {
-            (false, _) => Whom::People(found),
+        match (found.people.is_empty(), found.robot) {
+            (false, _) => Whom::People(found.people),
             (true, true) => Whom::Robot,
             (true, false) => Whom::Unsaid,
         }
     }
-}
 
-/// A human under the noun by which an edit can call them: of a role in several words (`elderly man`) the last that is one.
-pub(crate) fn person(human: &HumanProposal) -> Person {
-    let known = |word: &&str| plain(word) || lexicon().roles.contains_key(*word);
-    let words = || human.role.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
-    let whole = lexicon().roles.contains_key(&human.role);
-    let noun = if whole { None } else { words().rfind(known) };
-    let role = if human.role == "person" { "" } else { noun.unwrap_or(&human.role) }.to_owned();
-    Person { role, group: human.group, bound: true, ..Person::default() }
+    /// What the words say of them, and of others who join.
+    pub(crate) fn read(&self, wish: &Wish) -> Read {
+        Reader::shipped().read_of(&wish.quote, &self.roles, &self.last)
+    }
 }

@@ -14,7 +14,7 @@ use crate::noticing;
 use crate::place;
 use crate::prose::done;
 use crate::spot;
-use crate::understand::Extra;
+use crate::story::Extra;
 
 /// A robot that does its part has met somebody once they were this near, m: the usual distance of passing in a corridor.
 const MEETS_M: f64 = 2.5;

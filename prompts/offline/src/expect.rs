@@ -2,39 +2,35 @@
 
 use socrates_model::{Fault, FaultCode, GroupId, Reading, Request, Rule};
 
-use crate::cast::{Cast, Person};
-use crate::story::Story;
+use crate::story::{Group, Person, Story};
 
 /// `[expect]` wins over the text.
 pub(crate) fn settle(request: &Request, story: &mut Story, reading: &mut Reading) {
     if let Some(count) = request.expect.headcount() {
         let wanted = usize::try_from(count).unwrap_or(0);
-        let read = story.cast.people.len();
+        let read = story.people.len();
         // Groups name how many there are at least.
         let key = if request.expect.humans.is_some() { "humans" } else { "groups" };
-        if wanted > 0 && story.cast.nobody.take().is_some() {
+        if wanted > 0 && std::mem::take(&mut story.nobody) {
             story.problems.retain(|fault| fault.code != FaultCode::PLimit);
         }
         if read > 0 && wanted > 0 && (read < wanted || read != wanted && key == "humans") {
             reading.notes.push(format!("the text speaks of {read} humans, `expect.{key}` of {wanted}; it is {wanted}"));
-            story.cast.people.truncate(wanted);
-            let like = alike(&story.cast.people);
-            let before = story.cast.people.len();
-            story.cast.people.resize_with(wanted, || like.clone().unwrap_or_default());
-            if let Some((_, members, _)) =
-                story.cast.groups.first_mut().filter(|_| like.is_some_and(|one| one.group.is_some()))
-            {
-                members.extend(before..wanted);
+            story.people.truncate(wanted);
+            let like = alike(&story.people);
+            let before = story.people.len();
+            story.people.resize_with(wanted, || like.clone().unwrap_or_default());
+            if let Some(group) = story.groups.first_mut().filter(|_| like.is_some_and(|one| one.group.is_some())) {
+                group.members.extend(before..wanted);
             }
-            for (_, members, _) in &mut story.cast.groups {
-                members.retain(|i| *i < wanted);
+            for group in &mut story.groups {
+                group.members.retain(|i| *i < wanted);
             }
-            story.cast.groups.retain(|(_, members, _)| members.len() > 1);
+            story.groups.retain(|group| group.members.len() > 1);
             story.problems.retain(|fault| fault.code != FaultCode::PLimit);
-            story.cast.problems.retain(|fault| fault.code != FaultCode::PLimit);
         }
         if key == "humans" {
-            story.cast.count_quote = Some(format!("expect.humans = {count}"));
+            story.count_quote = Some(format!("expect.humans = {count}"));
         }
     }
     if let Some(class) = request.expect.place {
@@ -44,7 +40,7 @@ pub(crate) fn settle(request: &Request, story: &mut Story, reading: &mut Reading
             reading.notes.push(format!("{}; `expect.place` says where it happens", fault.message));
         }
     }
-    let read = story.cast.people.len();
+    let read = story.people.len();
     for numbers in &request.expect.groups {
         let members: Vec<usize> = numbers.iter().filter_map(|n| usize::try_from(*n).ok()?.checked_sub(1)).collect();
         // Where the text names nobody, the pattern's people are grouped so.
@@ -62,7 +58,7 @@ pub(crate) fn settle(request: &Request, story: &mut Story, reading: &mut Reading
             ));
             continue;
         }
-        regroup(&mut story.cast, &members);
+        regroup(story, &members);
     }
 }
 
@@ -79,29 +75,32 @@ fn alike(people: &[Person]) -> Option<Person> {
 }
 
 /// A group that wins over those of the text: its members are in no other.
-fn regroup(cast: &mut Cast, members: &[usize]) {
-    if cast.groups.iter().any(|(_, known, _)| known.len() == members.len() && members.iter().all(|i| known.contains(i)))
-    {
+fn regroup(story: &mut Story, members: &[usize]) {
+    let same =
+        |group: &Group| group.members.len() == members.len() && members.iter().all(|i| group.members.contains(i));
+    if story.groups.iter().any(same) {
         return;
     }
-    for (_, known, _) in &mut cast.groups {
-        known.retain(|i| !members.contains(i));
+    for group in &mut story.groups {
+        group.members.retain(|i| !members.contains(i));
     }
-    for (_, alone, _) in cast.groups.extract_if(.., |(_, known, _)| known.len() < 2) {
-        for i in alone {
-            if let Some(person) = cast.people.get_mut(i) {
-                person.group = None;
-            }
-        }
+    story.groups.retain(|group| group.members.len() > 1);
+    story.groups.push(Group {
+        id: GroupId(0),
+        members: members.to_vec(),
+        queue: false,
+        quote: "expect.groups".to_owned(),
+    });
+    for person in &mut story.people {
+        person.group = None;
     }
     // Ids stay one to n.
-    for (id, (own, members, _)) in (1..).map(GroupId).zip(&mut cast.groups) {
-        *own = id;
-        for i in members.iter() {
-            if let Some(person) = cast.people.get_mut(*i) {
+    for (id, group) in (1..).map(GroupId).zip(&mut story.groups) {
+        group.id = id;
+        for member in &group.members {
+            if let Some(person) = story.people.get_mut(*member) {
                 person.group = Some(id);
             }
         }
     }
-    cast.group(members, "expect.groups");
 }

@@ -15,15 +15,12 @@ use socrates_model::{
     Trigger,
 };
 
-use crate::bind::QUEUES;
-use crate::cast::{Person, ReadRule};
-use crate::deed::{self, Around};
-use crate::lexicon::Act;
-use crate::named;
-use crate::order;
-use crate::place;
-use crate::proposal::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
-use crate::story::Story;
+use crate::manner::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
+use crate::story::{Before, Group, Person, ReadRule, Story, stands};
+use crate::{named, place};
+
+/// What those do who stand one behind the other.
+const QUEUES: &str = "queues";
 
 /// Where a place of a form is on a map.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -96,7 +93,6 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
             speed_mps: human.pace.and_then(socrates_model::form::Pace::mps),
             start,
             goal: human.goal.as_ref().and_then(|goal| bound(goal, location)).map(|goal| goal.class),
-            bound: true,
             doings: vec![stands(human.relation, start)],
             ..Person::default()
         };
@@ -128,7 +124,7 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
                 then: !first,
             });
         }
-        story.cast.people.push(read);
+        story.people.push(read);
     }
     paces(request, &mut story);
     groups(request, &mut story);
@@ -136,7 +132,7 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
     places(request, location, &mut story);
     robot(request, location, &mut story);
     let count = form.headcount();
-    story.cast.count_quote = Some(format!("[[human]]: {count}"));
+    story.count_quote = Some(format!("[[human]]: {count}"));
     story
 }
 
@@ -174,23 +170,6 @@ fn in_place(human: &FormHuman, location: &Location) -> Option<PlaceClass> {
     start.or_else(|| if indoors { place() } else { None })
 }
 
-/// How somebody stands to the robot's way, for the reading line.
-fn stands(relation: Relation, start: Option<PlaceClass>) -> String {
-    let from = place::words(start.unwrap_or(PlaceClass::Room));
-    let act = match relation {
-        Relation::Leaving => return format!("leaves the {from}"),
-        Relation::Staying => return format!("stays in the {from}"),
-        Relation::Aside => return "stands beside the robot's way".to_owned(),
-        Relation::Frontal => Act::Toward,
-        Relation::Behind => Act::Behind,
-        Relation::Ahead => Act::Ahead,
-        Relation::Crossing => Act::Cross,
-        Relation::Static => Act::Stand,
-        Relation::Abreast => Act::Abreast,
-    };
-    deed::words(act, &Around::default())
-}
-
 /// Paces at which somebody cannot stand to the robot's way as stated.
 fn paces(request: &Request, story: &mut Story) {
     for person in request.form.people() {
@@ -213,13 +192,13 @@ fn groups(request: &Request, story: &mut Story) {
         let id = socrates_model::GroupId(number);
         let of_group = |person: &Person| person.group == Some(id);
         let members: Vec<usize> =
-            (0..story.cast.people.len()).filter(|who| story.cast.people.get(*who).is_some_and(of_group)).collect();
+            (0..story.people.len()).filter(|who| story.people.get(*who).is_some_and(of_group)).collect();
         let queue =
             request.form.groups.iter().any(|group| group.id == name && group.formation == Some(Formation::Queue));
-        for person in story.cast.people.iter_mut().filter(|person| queue && of_group(person)) {
+        for person in story.people.iter_mut().filter(|person| queue && of_group(person)) {
             person.doings = vec![QUEUES.to_owned()];
         }
-        story.cast.groups.push((id, members, format!("group = \"{name}\"")));
+        story.groups.push(Group { id, members, queue, quote: format!("group = \"{name}\"") });
     }
 }
 
@@ -229,7 +208,7 @@ fn orders(request: &Request, story: &mut Story) {
         let at_door = stated.at.is_some();
         for first in request.form.agents(&stated.first) {
             for then in request.form.agents(&stated.then) {
-                order::state(&mut story.order, (first, then), at_door, &quote);
+                story.order.push(Before { first, then, at_door, quote: quote.clone() });
             }
         }
     }

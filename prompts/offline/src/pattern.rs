@@ -2,17 +2,14 @@
 
 use socrates_model::{Action, Gesture, PlaceClass, Relation};
 
-use crate::cast::Person;
-use crate::cut::sentences;
-use crate::lexicon::lexicon;
-use crate::story::Story;
+use crate::story::{Person, Story};
 
 /// The card of the story; `None` where no card fits (the proposal is `free` then).
 pub(crate) fn of(story: &Story, wanted: Option<&str>) -> Option<String> {
     if let Some(id) = wanted {
         return Some(id.to_owned());
     }
-    let people = &story.cast.people;
+    let people = &story.people;
     let place = story.place.as_ref().map(|(class, _)| *class);
     if people.is_empty() {
         return by_place(place).map(str::to_owned);
@@ -21,13 +18,13 @@ pub(crate) fn of(story: &Story, wanted: Option<&str>) -> Option<String> {
     let does = |act: &Action| people.iter().any(|p| has(p, act));
     let says = |gesture: Gesture| people.iter().any(|p| p.rules.iter().any(|read| read.rule.gesture == Some(gesture)));
     let apart = people.iter().any(|p| has(p, &Action::FollowRobot) && !has(p, &Action::Block));
-    let group = !story.cast.groups.is_empty();
+    let group = !story.groups.is_empty();
     let id = if relation(Relation::Leaving) {
         let car = people.iter().any(|p| p.start == Some(PlaceClass::Elevator)) || place == Some(PlaceClass::Elevator);
         if car { "entering_elevator" } else { "room_exit" }
     } else if apart && does(&Action::Block) {
         "corridor_follow_and_block"
-    } else if group && people.iter().any(|person| person.doings.iter().any(|doing| doing == crate::bind::QUEUES)) {
+    } else if story.groups.iter().any(|group| group.queue) {
         "queue"
     } else if group && relation(Relation::Static) {
         "group_passing"
@@ -80,27 +77,4 @@ fn by_place(place: Option<PlaceClass>) -> Option<&'static str> {
         PlaceClass::OpenArea => "group_passing",
         PlaceClass::Corridor | PlaceClass::Exit | PlaceClass::Plain => "frontal_approach",
     })
-}
-
-/// The first word for people in the social context that says who they are.
-pub(crate) fn role_of(context: &str) -> Option<String> {
-    let lex = lexicon();
-    sentences(context)
-        .into_iter()
-        .flatten()
-        .flat_map(|stretch| stretch.words)
-        .map(|word| word.stem)
-        .find(|stem| lex.roles.get(stem).is_some_and(|role| !role.generic))
-}
-
-/// The pace that the social context suggests, m/s.
-pub(crate) fn pace_of(context: &str) -> Option<f64> {
-    let lex = lexicon();
-    let words: Vec<String> = sentences(context)
-        .into_iter()
-        .flatten()
-        .flat_map(|stretch| stretch.words)
-        .flat_map(|word| [word.text, word.stem])
-        .collect();
-    words.iter().find_map(|word| lex.pace.get(word).copied())
 }

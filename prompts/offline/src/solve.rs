@@ -1,30 +1,17 @@
 //! The paths question as a problem of geometry: what task, text and card ask for, without their words.
 
-use socrates_model::job::Stage;
-use socrates_model::{Location, Paths, Proposal, Reading, Request};
+use socrates_model::{Paths, Proposal};
 use socrates_prompts::Question;
 use socrates_solver::{Layout, Miss, Problem, Told};
 
 use crate::card::card;
 use crate::draw::Draw;
-use crate::{NAME, form, proposal, spot, task};
+use crate::name::NAME;
+use crate::{form, spot, task};
 
 /// Answers a paths question.
 pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Result<Paths, Miss> {
     socrates_solver::solve(&problem(question, proposal)).map(|solved| solved.paths)
-}
-
-/// Why a request can have no paths on a map, whatever is drawn; nothing where only the author finds that out.
-#[must_use]
-pub fn impossible(request: &Request, reading: &Reading, location: &Location) -> Option<Miss> {
-    let mut question = Question::first(request.clone(), reading.clone(), location.clone(), 0);
-    let mut proposal = proposal::propose(&question);
-    if reading.humans.is_empty() {
-        // Nobody asked for these people: another draw has others.
-        proposal.humans.clear();
-    }
-    question.stage = Stage::Paths;
-    socrates_solver::impossible(&problem(&question, &proposal))
 }
 
 /// What is to be solved.

@@ -1,14 +1,13 @@
 //! Which place of a class is meant, where the text names it: `the kitchen`, `in front of the meeting room`, `the doorway`.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use socrates_model::{FactKind, HumanId, HumanProposal, Location, NodeId, PlaceClass, Reading, Relation};
 
 use socrates_prompts::Question;
+use socrates_reader::Reader;
 
-use crate::clause::{self, Found};
-use crate::cut::{Stretch, sentences};
-use crate::lexicon::lexicon;
 use crate::task::{self, End};
 use crate::{named, place};
 
@@ -21,76 +20,32 @@ pub(crate) struct Meant {
     pub(crate) nodes: Vec<NodeId>,
 }
 
-/// Words of a name before the word for the place, and after it, at most.
-const BEFORE: usize = 2;
-const AFTER: usize = 2;
-
 /// The place of the class that a quote names; `None` where any place of the class is meant.
 pub(crate) fn named_in(location: &Location, quote: &str, class: PlaceClass) -> Option<Meant> {
     // Cars and their lobbies are told apart by who uses them.
     if matches!(class, PlaceClass::Elevator | PlaceClass::ElevatorLobby | PlaceClass::Plain) {
         return None;
     }
-    let read = |mut stretch: Stretch| {
-        let found = clause::read(&mut stretch);
-        (stretch, found)
-    };
-    let stretches: Vec<(Stretch, Found)> = sentences(quote).into_iter().flatten().map(read).collect();
+    let all = Reader::shipped().places(quote);
     if class == PlaceClass::Doorway {
-        return doorways(location, quote, &stretches);
+        return doorways(location, quote, &all);
     }
+    let said = |at: &Range<usize>| quote.get(at.clone()).unwrap_or_default().to_owned();
     let mut unknown = None;
-    for (stretch, found) in &stretches {
-        for (_, at) in found.places.iter().filter(|(other, _)| *other == class) {
-            let (own, whole) = phrase(stretch, *at, quote);
-            if named::telling(&own).is_empty() && named::find(location, &whole).is_none() {
-                continue;
-            }
-            let Some(known) = named::find(location, &whole) else {
-                unknown.get_or_insert(Meant { name: own, nodes: Vec::new() });
-                continue;
-            };
-            let outside = class == PlaceClass::Room && outside(stretch, *at);
-            let nodes = if outside { before_doors(location, &known.nodes) } else { known.nodes };
-            return Some(Meant { name: own, nodes });
+    for place in all.iter().filter(|place| place.class == class) {
+        let (own, whole) = (said(&place.own), said(&place.whole));
+        if named::telling(&own).is_empty() && named::find(location, &whole).is_none() {
+            continue;
         }
+        let Some(known) = named::find(location, &whole) else {
+            unknown.get_or_insert(Meant { name: own, nodes: Vec::new() });
+            continue;
+        };
+        let outside = class == PlaceClass::Room && place.outside;
+        let nodes = if outside { before_doors(location, &known.nodes) } else { known.nodes };
+        return Some(Meant { name: own, nodes });
     }
     unknown
-}
-
-/// The name from the word for the place on, and with the words before it.
-fn phrase(stretch: &Stretch, at: usize, quote: &str) -> (String, String) {
-    let lex = lexicon();
-    let describes = |k: &usize| {
-        stretch.words.get(*k).is_some_and(|word| {
-            !lex.stop.contains(&word.text) && !lex.verbs.contains(&word.stem) && !lex.roles.contains_key(&word.stem)
-        })
-    };
-    let belongs = |k: &usize| {
-        stretch.words.get(*k).is_some_and(|word| word.is_digits() || named::telling(&word.text).is_empty())
-            && describes(k)
-    };
-    let from = (1..=BEFORE).filter_map(|back| at.checked_sub(back)).take_while(describes).last().unwrap_or(at);
-    let to = (at + 1..=at + AFTER).take_while(belongs).last().unwrap_or(at);
-    let said = |from: usize| {
-        let (first, last) = (stretch.words.get(from), stretch.words.get(to));
-        let span = first.zip(last).and_then(|(first, last)| quote.get(first.from..last.to));
-        span.unwrap_or_default().trim_start_matches("the ").to_owned()
-    };
-    (said(at), said(from))
-}
-
-/// `in front of the kitchen`, `outside the ward`, `at the meeting room door`.
-fn outside(stretch: &Stretch, at: usize) -> bool {
-    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let article = |k: &usize| matches!(text(*k), "the" | "a" | "an" | "this" | "that");
-    let before = (1..=3).filter_map(|back| at.checked_sub(back)).find(|k| !article(k));
-    let door = (at + 1..=at + AFTER).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "door"));
-    before.is_some_and(|k| {
-        matches!(text(k), "outside" | "before")
-            || text(k) == "of" && k.checked_sub(1).is_some_and(|k| text(k) == "front")
-            || door && matches!(text(k), "at" | "by" | "near")
-    })
 }
 
 fn is_door(location: &Location, id: &NodeId) -> bool {
@@ -115,14 +70,14 @@ fn before_doors(location: &Location, rooms: &[NodeId]) -> Vec<NodeId> {
 }
 
 /// A node that only has a way through a door is no doorway: those are that the map calls so, and of them those of a room by name.
-fn doorways(location: &Location, quote: &str, stretches: &[(Stretch, Found)]) -> Option<Meant> {
+fn doorways(location: &Location, quote: &str, places: &[socrates_reader::Named]) -> Option<Meant> {
     let graph = &location.graph;
     let mut nodes: Vec<NodeId> =
         graph.nodes().iter().map(|node| node.id.clone()).filter(|id| is_door(location, id)).collect();
-    let rooms = stretches.iter().flat_map(|(stretch, found)| {
-        found.places.iter().filter(|(class, _)| *class == PlaceClass::Room).map(move |(_, at)| (stretch, *at))
-    });
-    let of = rooms.filter_map(|(stretch, at)| named::find(location, &phrase(stretch, at, quote).1)).next();
+    let said = |at: &Range<usize>| quote.get(at.clone()).unwrap_or_default();
+    // `the doorway of the ward` is one place, and `the ward` another one in it.
+    let rooms = places.iter().flat_map(|place| [&place.own, &place.whole]);
+    let of = rooms.filter_map(|at| named::find(location, said(at))).find(|found| found.class == PlaceClass::Room);
     let own = |id: &NodeId| of.as_ref().is_none_or(|of| graph.neighbors(id).iter().any(|next| of.nodes.contains(next)));
     let narrow = |id: &NodeId| graph.node(id).is_some_and(|node| node.kind.to_lowercase().contains("narrow"));
     if nodes.iter().any(own) {

@@ -17,7 +17,7 @@ pub fn stated(request: &Request, location: &Location) -> Reading {
         waive: Vec::new(),
         ..request.clone()
     };
-    let mut reading = understood(&bare, location, false, ReadBy::Grammar).reading;
+    let mut reading = understood(&bare, location, false).reading;
     reading.by = ReadBy::Author;
     reading.task = shortened(&request.task);
     // They tell what a missing text is taken for.
@@ -50,7 +50,7 @@ fn expected(request: &Request, reading: &mut Reading) {
 /// grammar does not know the language, the reading says that nothing was held against it.
 pub fn dispute(request: &Request, location: &Location, reading: &mut Reading) {
     let text = Request { form: socrates_model::form::Form::default(), ..request.clone() };
-    let known = understood(&text, location, true, ReadBy::Grammar).reading;
+    let known = understood(&text, location, true).reading;
     if known.problems.iter().any(|problem| problem.code == FaultCode::PLang) {
         reading.by = ReadBy::AuthorAlone;
         return;

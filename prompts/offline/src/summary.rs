@@ -71,6 +71,17 @@ pub(crate) fn plural(text: &str) -> String {
     text.split(", ").map(part).collect::<Vec<_>>().join(", ")
 }
 
+/// The words of the reading's texts that were not understood, each once, as they stand there.
+pub(crate) fn unread(reading: &Reading) -> Vec<&str> {
+    let mut words: Vec<&str> = Vec::new();
+    for statement in reading.statements.iter().filter(|statement| statement.is_unread()) {
+        if !words.contains(&statement.quote.as_str()) {
+            words.push(&statement.quote);
+        }
+    }
+    words
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,18 +1,19 @@
 //! The robot's task: from where, to where, and what is only said.
 
-use socrates_model::{Location, NodeId, PlaceClass};
+use std::ops::Range;
 
-use crate::clause::{self, Found, mark};
-use crate::cut::{Stretch, sentences};
-use crate::lexicon::lexicon;
+use socrates_model::{Location, NodeId, PlaceClass};
+use socrates_reader::{Errand, Leg, Reader, Toward};
+
 use crate::named;
-use crate::words::Word;
 
 /// One end of the robot's way by its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct End {
     /// As the task says it.
     pub(crate) name: String,
+    /// Where it says so, in bytes.
+    pub(crate) at: Range<usize>,
     /// The nodes that the map calls so; none where it knows no such place.
     pub(crate) nodes: Vec<NodeId>,
     /// Class of those nodes, or of the words.
@@ -38,6 +39,10 @@ pub(crate) struct Task {
     pub(crate) comes_home: bool,
     /// Words that say where the robot is not to go.
     pub(crate) denied: Vec<String>,
+    /// Where the words stand of which something was made, in bytes.
+    pub(crate) used: Vec<Range<usize>>,
+    /// Where words stand that deny something which is no place.
+    pub(crate) open: Vec<Range<usize>>,
 }
 
 /// The nodes where a way begins or ends by name.
@@ -48,21 +53,16 @@ pub(crate) fn nodes(ends: &[End]) -> &[NodeId] {
 /// Reads a task such as `Take the elevator to deliver supplies` or `Bring mail from the lobby to the kitchen`.
 pub(crate) fn read(text: &str, location: &Location) -> Task {
     let mut task = Task::default();
-    let (returns, first): (Vec<Stretch>, Vec<Stretch>) =
-        sentences(text).into_iter().flatten().partition(|stretch| comes_back(stretch).is_some());
+    let (returns, first): (Vec<Errand>, Vec<Errand>) =
+        Reader::shipped().errands(text).into_iter().partition(|errand| errand.returns);
     let alone = first.is_empty();
-    for stretch in first {
-        errand(&mut task, stretch, text, location);
+    for errand in first {
+        takes(&mut task, &errand, text, location);
     }
     // `deliver mail and return (to the desk)`: the second errand. `return to the desk`, with no other place to go: the first.
-    for mut stretch in returns {
-        let quote = stretch.quote(text).to_owned();
+    for errand in returns {
         let mut onward = task.clone();
-        let at = comes_back(&stretch).unwrap_or(0);
-        for word in stretch.words.iter_mut().skip(at).take(2) {
-            word.used = true;
-        }
-        errand(&mut onward, stretch, text, location);
+        takes(&mut onward, &errand, text, location);
         let first = task.goal.is_none() && task.goals.is_empty();
         if first && (onward.goal.is_some() || !onward.goals.is_empty()) {
             task = onward;
@@ -72,10 +72,17 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             let elsewhere = onward.goal != task.goal || onward.via != task.via;
             // `Return` alone says of no errand where from.
             task.comes_home = !alone && if to.is_empty() { !elsewhere } else { to.iter().all(home) };
-            task.back.get_or_insert(quote);
+            task.back.get_or_insert_with(|| text.get(errand.at.clone()).unwrap_or_default().to_owned());
+            task.used.push(errand.at);
             task.denied = onward.denied;
         }
     }
+    // Of several places by name one is taken.
+    let taken =
+        |ends: &[End]| ends.iter().find(|end| !end.nodes.is_empty()).or_else(|| ends.first()).map(|end| end.at.clone());
+    let used: Vec<Range<usize>> =
+        [&task.starts, &task.goals, &task.vias].into_iter().filter_map(|ends| taken(ends)).collect();
+    task.used.extend(used);
     // The name tells more than the kind of place.
     for (slot, ends) in [(&mut task.start, &task.starts), (&mut task.goal, &task.goals)] {
         let known = ends.iter().find(|end| !end.nodes.is_empty()).or_else(|| ends.first());
@@ -87,215 +94,92 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
     task
 }
 
-/// Where a clause asks for a way back: `return to the desk`, `comes back`; `return the cup to the kitchen` does not.
-fn comes_back(stretch: &Stretch) -> Option<usize> {
-    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let last = |i: usize| matches!(text(i + 1), "" | "to" | "back" | "home" | "again");
-    (0..stretch.words.len()).find(|i| {
-        matches!(text(*i), "return" | "returns" | "returning") && last(*i)
-            || matches!(text(*i), "come" | "comes" | "go" | "goes" | "coming") && text(i + 1) == "back"
-    })
-}
-
-/// Reads one clause of a task.
-fn errand(task: &mut Task, mut stretch: Stretch, text: &str, location: &Location) {
-    let quote = stretch.quote(text).to_owned();
-    if let Some(denied) = denied(&mut stretch, text, location) {
-        task.denied.push(denied);
-        if stretch.words.is_empty() {
-            return;
+/// Takes what one clause of a task says.
+fn takes(task: &mut Task, errand: &Errand, text: &str, location: &Location) {
+    let said = |at: &Range<usize>| text.get(at.clone()).unwrap_or_default();
+    let of_map = |words: &str| {
+        word_starts(words).any(|at| words.get(at..).is_some_and(|name| named::find(location, name).is_some()))
+    };
+    let denied = errand.denied.as_ref().filter(|denied| denied.names_a_place || of_map(said(&denied.rest)));
+    match (denied, &errand.denied) {
+        (Some(denied), _) => {
+            task.denied.push(said(&denied.at).to_owned());
+            task.used.push(denied.at.clone());
+        }
+        (None, Some(other)) => task.open.push(other.at.start..other.rest.start),
+        (None, None) => {}
+    }
+    let kept = |at: &Range<usize>| denied.is_none_or(|denied| at.start < denied.at.start);
+    let mut named: Vec<&Range<usize>> = Vec::new();
+    for leg in errand.legs.iter().filter(|leg| kept(&leg.name)) {
+        if let Some(end) = end(leg, said(&leg.name), location) {
+            let ends = match leg.toward {
+                Toward::From if !errand.fetches => &mut task.starts,
+                Toward::From | Toward::To | Toward::Within => &mut task.goals,
+                Toward::Past => &mut task.vias,
+            };
+            ends.push(end);
+            named.push(&leg.name);
         }
     }
-    let found = clause::read(&mut stretch);
-    // `fetch goods from the rack`: the way leads there, unless the text says where it leads then.
-    let fetches = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "fetch" | "get" | "collect" | "pick"))
-        && !text.to_lowercase().split_whitespace().any(|word| TO.contains(&word));
-    let named = named_ends(task, &mut stretch, &found, text, location);
-    for (class, at) in found.places {
-        if named.iter().any(|(from, to)| (*from..=*to).contains(&at)) {
+    for spot in errand.spots.iter().filter(|spot| kept(&spot.at)) {
+        if named.iter().any(|name| name.start < spot.at.end && spot.at.start < name.end) {
             continue;
         }
-        let before: Vec<&str> = (1..=3)
-            .filter_map(|back| at.checked_sub(back))
-            .filter_map(|i| stretch.words.get(i))
-            .map(|word| word.text.as_str())
-            .collect();
-        let near = |names: &[&str]| before.iter().position(|word| names.contains(word));
-        let (from, to, via) = (
-            near(&["from"]),
-            near(&["to", "into", "at", "reach", "towards", "toward"]),
-            near(&["via", "through", "along", "past"]),
-        );
-        let rides = class == PlaceClass::Elevator && near(&["take", "use", "ride", "enter", "the", "an"]).is_some();
-        let slot = match (from, to, via) {
-            (Some(_), None, _) if fetches => &mut task.goal,
-            (Some(from), Some(to), _) if from < to => &mut task.start,
-            (Some(_), None, _) => &mut task.start,
-            (None, None, Some(_)) => &mut task.via,
-            (_, Some(_), _) => &mut task.goal,
-            (None, None, None) if rides => &mut task.goal,
-            (None, None, None) => &mut task.via,
+        let slot = match spot.toward {
+            Toward::From => &mut task.start,
+            Toward::To => &mut task.goal,
+            Toward::Within | Toward::Past => &mut task.via,
         };
         if slot.is_none() {
-            *slot = Some((class, quote.clone()));
+            *slot = Some((spot.class, said(&errand.at).to_owned()));
+            task.used.extend(of_kind(text, &spot.at));
         }
     }
-    if fetches {
-        task.goals.append(&mut task.starts);
-    }
-    load(&mut stretch);
 }
 
-/// Takes the words off a clause that say where the robot is not to go: `do not go to the kitchen`, `without entering the elevator`.
-fn denied(stretch: &mut Stretch, text: &str, location: &Location) -> Option<String> {
-    let word = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let denies = |k: &usize| matches!(word(*k), "not" | "never" | "avoid" | "avoids" | "avoiding" | "without");
-    let at = (0..stretch.words.len()).find(denies)?;
-    let from = at.checked_sub(1).filter(|k| matches!(word(*k), "do" | "does" | "must" | "should" | "may" | "can"));
-    let tail = Stretch { words: stretch.words.get(at..)?.to_vec(), ..stretch.clone() };
-    let (first, last) = (stretch.words.get(from.unwrap_or(at))?, stretch.words.last()?);
-    let quote = text.get(first.from..last.to)?.to_owned();
-    let place = !clause::read(&mut tail.clone()).places.is_empty()
-        || (at + 1..stretch.words.len())
-            .filter_map(|k| stretch.words.get(k))
-            .any(|word| text.get(word.from..last.to).is_some_and(|name| named::find(location, name).is_some()));
-    if place {
-        stretch.words.truncate(from.unwrap_or(at));
-    }
-    place.then_some(quote)
-}
-
-/// Words before the beginning of a way, before its end, and before where the work is.
-const FROM: &[&str] = &["from"];
-const TO: &[&str] = &["to", "into", "towards", "toward", "reach", "visit"];
-const IN: &[&str] = &["in", "at", "inside"];
-/// Words before what a way leads past.
-const PAST: &[&str] = &["via", "through", "past"];
-/// Words between such a word and the name.
-const FILL: &[&str] = &[
-    "the", "a", "an", "its", "their", "our", "my", "your", "this", "that", "next", "nearest", "closest", "main", "new",
-];
-/// What a robot does for itself: `Go to charge`.
-const ITSELF: &[&str] = &["charge", "recharge", "refuel", "park", "work", "human"];
-
-/// Takes the ends of the way that a clause names; says which words those are.
-fn named_ends(
-    task: &mut Task,
-    stretch: &mut Stretch,
-    found: &Found,
-    said: &str,
-    location: &Location,
-) -> Vec<(usize, usize)> {
-    let lex = lexicon();
-    let mut taken = Vec::new();
-    for at in 0..stretch.words.len() {
-        let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-        let goes = TO.contains(&text(at));
-        let past = PAST.contains(&text(at));
-        if !goes && !past && !FROM.contains(&text(at)) && !IN.contains(&text(at)) {
-            continue;
-        }
-        let from = (at + 1..).find(|k| !FILL.contains(&text(*k))).unwrap_or(at + 1);
-        let content = |word: &Word| {
-            word.stem != "robot" && (!lex.stop.contains(&word.text) || word.is_digits()) && word.text != "another"
-        };
-        let count = stretch.words.iter().skip(from).take(4).take_while(|word| content(word)).count();
-        // `from one corner to another`, `to the other end`, `to the nurse`
-        let person = found.mentions.iter().any(|mention| (from..from + count).contains(&mention.to));
-        if count == 0 || person {
-            continue;
-        }
-        let words = stretch.words.get(from..from + count).unwrap_or_default();
-        let (Some(first), Some(last)) = (words.first(), words.last()) else { continue };
-        let name = said.get(first.from..last.to).unwrap_or_default().to_owned();
-        let known = named::find(location, &name);
-        let class =
-            found.places.iter().find(|(_, place)| (from..from + count).contains(place)).map(|(class, _)| *class);
-        // `in the office`, in an office
-        let everywhere =
-            IN.contains(&text(at)) && named::telling(&name).iter().all(|word| location.name.contains(word));
-        let verb = from == at + 1
-            && (lex.verbs.contains(&first.stem)
-                || lex.task.contains(&first.stem)
-                || ITSELF.contains(&first.stem.as_str()));
-        let article = from > at + 1 || count == stretch.words.len() - from;
-        let wanted = match (&known, class) {
-            (Some(_), _) => !everywhere && (!verb || class.is_some()),
-            (None, _) if named::telling(&name).is_empty() => false,
-            (None, Some(class)) => goes || FROM.contains(&text(at)) || class == PlaceClass::Room,
-            (None, None) => !IN.contains(&text(at)) && article && !verb,
-        };
-        if !wanted || past && known.as_ref().is_none_or(|known| !known.exact) {
-            continue;
-        }
-        let exact = known.as_ref().is_some_and(|known| known.exact);
-        let of_map = known.as_ref().map(|known| known.class).filter(|class| *class != PlaceClass::Plain);
-        let end =
-            End { name, nodes: known.map(|known| known.nodes).unwrap_or_default(), class: of_map.or(class), exact };
-        if past {
-            task.vias.push(end)
-        } else if FROM.contains(&text(at)) {
-            task.starts.push(end)
-        } else {
-            task.goals.push(end)
-        }
-        taken.push((from, from + count - 1));
-    }
-    for (from, to) in &taken {
-        mark(stretch, *from, *to);
-    }
-    taken
-}
-
-/// What the robot carries is part of its task, which the reading repeats: `deliver mail`.
-fn load(stretch: &mut Stretch) {
-    let carries = |word: &Word| {
-        matches!(
-            word.stem.as_str(),
-            "deliver"
-                | "bring"
-                | "carry"
-                | "transport"
-                | "fetch"
-                | "collect"
-                | "pick"
-                | "drop"
-                | "take"
-                | "delivery"
-                | "distribute"
-                | "haul"
-                | "move"
-                | "return"
-                | "hand"
-                | "clean"
-                | "pull"
-                | "push"
-                | "get"
-        )
+/// The words by which a place is one of a kind: `waiting` tells which area, and any is taken.
+fn of_kind(text: &str, at: &Range<usize>) -> Vec<Range<usize>> {
+    let words = text.get(at.clone()).unwrap_or_default();
+    let starts: Vec<usize> = word_starts(words).collect();
+    let ends = starts.iter().skip(1).copied().chain([words.len()]);
+    let all = starts.iter().copied().zip(ends).map(|(from, to)| from..to);
+    let own = |word: &Range<usize>| {
+        word.end == words.len() || named::telling(words.get(word.clone()).unwrap_or_default()).is_empty()
     };
-    let ends = |word: &Word| {
-        matches!(
-            word.text.as_str(),
-            "from"
-                | "to"
-                | "into"
-                | "in"
-                | "at"
-                | "on"
-                | "via"
-                | "through"
-                | "along"
-                | "past"
-                | "with"
-                | "while"
-                | "by"
-        )
+    all.filter(own).map(|word| at.start + word.start..at.start + word.end).collect()
+}
+
+/// Where the words of a text begin.
+fn word_starts(text: &str) -> impl Iterator<Item = usize> {
+    let letters = text.char_indices().scan(' ', |before, (at, letter)| {
+        let begins = letter.is_alphanumeric() && !before.is_alphanumeric();
+        *before = letter;
+        Some((at, begins))
+    });
+    letters.filter(|(_, begins)| *begins).map(|(at, _)| at)
+}
+
+/// A place by name, where it is one for the robot's way on this map.
+fn end(leg: &Leg, name: &str, location: &Location) -> Option<End> {
+    let known = named::find(location, name);
+    let telling = named::telling(name);
+    // `in the office`, in an office
+    let everywhere = leg.toward == Toward::Within && telling.iter().all(|word| location.name.contains(word));
+    let goes = matches!(leg.toward, Toward::From | Toward::To);
+    let wanted = match (&known, leg.class) {
+        (Some(_), class) => !everywhere && (!leg.may_be_deed || class.is_some()),
+        (None, _) if telling.is_empty() => false,
+        (None, Some(class)) => goes || class == PlaceClass::Room,
+        (None, None) => leg.toward != Toward::Within && leg.stands_alone && !leg.may_be_deed,
     };
-    let mut carried = false;
-    for word in &mut stretch.words {
-        carried = (carried || carries(word)) && !ends(word);
-        word.used |= carried;
+    let exact = known.as_ref().is_some_and(|known| known.exact);
+    if !wanted || leg.toward == Toward::Past && !exact {
+        return None;
     }
+    let of_map = known.as_ref().map(|known| known.class).filter(|class| *class != PlaceClass::Plain);
+    let nodes = known.map(|known| known.nodes).unwrap_or_default();
+    Some(End { name: name.to_owned(), at: leg.name.clone(), nodes, class: of_map.or(leg.class), exact })
 }
 
 #[cfg(test)]

@@ -3,21 +3,17 @@
 use socrates_model::proposal::WayPart;
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
-    Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, ReadBy, Reading,
-    Relation, Request, Rule, Trigger,
+    Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, Reading, Relation,
+    Request,
 };
+use socrates_reader::{Familiar, Reader};
 
 use crate::card::Ends;
-use crate::cast::{Person, ReadRule};
-use crate::lexicon::lexicon;
-use crate::order;
-use crate::pattern;
-use crate::statements::{Line, Unplayed, lines};
-use crate::story::{self, Story};
+use crate::lines::{Line, lines};
+use crate::story::{Before, Extra, ReadRule, Story, Unplayed, agent, human_id};
 use crate::task::{self, End, Task};
 use crate::{
-    again, aside, boards, chance, contra, cut, default_cast, expect, facing, form, named_way, numbered, place, sides,
-    small, spot, words,
+    again, aside, chance, default_cast, expect, facing, form, named_way, pattern, place, settle, sides, spot, told,
 };
 
 /// The reading with what the model has no field for.
@@ -31,40 +27,26 @@ pub(crate) struct Understood {
     pub(crate) lines: Vec<Line>,
     /// Words that were understood, and are not played as they were said.
     pub(crate) unplayed: Vec<Unplayed>,
-    /// Where the words of the rough scenario stand that some rule read, in bytes.
-    pub(crate) used: Vec<std::ops::Range<usize>>,
+    /// What was read of the task.
+    pub(crate) task: Task,
     /// Sentences that speak to the program.
     pub(crate) instructions: Vec<String>,
 }
 
-/// What is known of one human beyond the reading.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Extra {
-    pub(crate) speed_mps: Option<f64>,
-    pub(crate) start: Option<PlaceClass>,
-    pub(crate) goal: Option<PlaceClass>,
-    /// Per rule: whether the text says when.
-    pub(crate) stated: Vec<bool>,
-    /// Per rule: whether the text leaves open how near the robot is then; empty for the rules of a card, which draws its own.
-    pub(crate) open: Vec<bool>,
-}
-
 /// Reads a request. Never fails: what cannot be read stands in `problems`.
-pub(crate) fn understand(request: &Request, location: &Location, by: ReadBy) -> Understood {
-    understood(request, location, true, by)
+pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
+    understood(request, location, true)
 }
 
 /// Reads a request. A text of which words are hidden is not `whole`: it is not held to be in another language, nor against a form.
-pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by: ReadBy) -> Understood {
+pub(crate) fn understood(request: &Request, location: &Location, whole: bool) -> Understood {
     let told = aside::split(request.rough_scenario.as_deref().unwrap_or_default());
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
     let stated = !request.form.is_empty();
-    let small = by == ReadBy::Small;
     let mut story = match rough {
         _ if stated => form::story(request, location),
-        Some(_) if small => small::story(&told.story),
-        Some(rough) => story::read(rough),
+        Some(_) => told::story(&told.story),
         None => Story::default(),
     };
     let mut task = task::read(&asked.story, location);
@@ -72,8 +54,7 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by
     for (slot, stated) in [(&mut task.start, &request.robot.start), (&mut task.goal, &request.robot.goal)] {
         *slot = slot.take().filter(|_| stated.is_none());
     }
-    let by = if small { ReadBy::Small } else { ReadBy::Grammar };
-    let mut reading = Reading { format: FORMAT, by, task: shortened(&asked.story), ..Reading::default() };
+    let mut reading = Reading { format: FORMAT, task: shortened(&asked.story), ..Reading::default() };
     let context = aside::split(&request.social_context);
     for (at, found) in [("rough_scenario", &told), ("task", &asked), ("social_context", &context)] {
         reading.problems.extend(found.instructions.iter().map(|sentence| {
@@ -88,15 +69,11 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by
     expect::settle(request, &mut story, &mut reading);
     // What a form states is not filled in.
     if !stated {
-        story.finish();
-        contra::finish(&mut story, &told.story);
-        boards::settle(&mut story, location);
-        chance::settle(&mut story, &told.story);
-        story.cast.notes.extend(numbered::ranges(&told.story));
-        again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
+        settle::settle(&mut story);
+        chance::settle(&mut story);
     }
     unplaceable(location, &mut story, &mut task, &mut reading);
-    let wanted = request.expect.pattern.as_deref().or(story.robot_part).or_else(|| form::robot_part(request));
+    let wanted = request.expect.pattern.as_deref().or_else(|| form::robot_part(request));
     let told_of = rough.is_some() || stated;
     reading.pattern = told_of.then(|| pattern::of(&story, wanted)).flatten().or_else(|| wanted.map(str::to_owned));
     if let Some(id) = request.expect.pattern.as_ref().filter(|id| crate::card::card(id).is_none()) {
@@ -110,7 +87,6 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by
     }
     people(request, &story, &mut reading);
     let mut extras: Vec<Extra> = story
-        .cast
         .people
         .iter()
         .map(|person| Extra {
@@ -122,11 +98,11 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by
         })
         .collect();
     // A text without people, or only a number of them: the pattern says what they do.
-    if story.cast.nobody.is_some() && reading.humans.is_empty() {
+    if story.nobody {
         reading.pattern = None;
     }
     let foreign = reading.problems.iter().any(|fault| fault.code == FaultCode::PLang);
-    let empty = reading.humans.is_empty() && story.cast.nobody.is_none() && !foreign;
+    let empty = reading.humans.is_empty() && !story.nobody && !foreign;
     let by_card = empty && rough.is_some();
     if by_card {
         extras = default_cast::fill(&mut reading, &story, request, location);
@@ -145,12 +121,10 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool, by
     crate::spans::mark(request, &mut reading.problems);
     if whole && stated && rough.is_some() {
         let text = Request { form: socrates_model::form::Form::default(), ..request.clone() };
-        reading.notes.extend(form::differs(&reading, &understand(&text, location, by).reading));
+        reading.notes.extend(form::differs(&reading, &understand(&text, location).reading));
     }
-    let before = told.story.len() - told.story.trim_start().len();
-    let used = story.used.iter().map(|at| at.start + before..at.end + before).collect();
     let instructions = [&told, &asked, &context].into_iter().flat_map(|told| told.instructions.clone()).collect();
-    Understood { reading, extras, by_card, lines, unplayed: story.cast.unplayed, used, instructions }
+    Understood { reading, extras, by_card, lines, unplayed: story.unplayed, task, instructions }
 }
 
 /// A pattern by name that this map cannot hold: a fault that says what is missing.
@@ -180,22 +154,13 @@ fn language(request: &Request, reading: &mut Reading) {
     let texts =
         [("rough_scenario", request.rough_scenario.as_deref().unwrap_or_default()), ("task", request.task.as_str())];
     for (key, text) in texts {
-        let all: Vec<words::Word> =
-            cut::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
-        let letters: Vec<&words::Word> = all.iter().filter(|word| word.text.starts_with(char::is_alphabetic)).collect();
-        let lex = lexicon();
-        let known = letters
-            .iter()
-            .filter(|word| lex.known.contains(&word.stem) || lex.known.contains(&word.text) || word.stem == "robot")
-            .count();
+        let Familiar { words, known } = Reader::shipped().familiar(text);
         // English texts of a few words still have half of theirs in the tables; other languages share single words only.
-        let script = known == 0 && letters.len() < 4 && aside::language(text).is_some();
-        if script || letters.len() >= 4 && known * 10 < letters.len() * 3 || aside::foreign(text).is_some() {
+        let script = known == 0 && words < 4 && aside::language(text).is_some();
+        if script || words >= 4 && known * 10 < words * 3 || aside::foreign(text).is_some() {
             let named = aside::language(text).map_or_else(String::new, |name| format!(" (this looks like {name})"));
-            let message = format!(
-                "{known} of {} words are known{named}; the offline author reads plain English only",
-                letters.len()
-            );
+            let message =
+                format!("{known} of {words} words are known{named}; the offline author reads plain English only");
             reading.problems.push(Fault::new(FaultCode::PLang, key, message));
         }
     }
@@ -228,9 +193,9 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
     reading.place = said;
     let rooms = !place::inside(location, None).is_empty();
     let cars = !place::inside(location, Some(PlaceClass::Elevator)).is_empty();
-    for who in 0..story.cast.people.len() {
+    for who in 0..story.people.len() {
         let next = story.relation_of(who);
-        let Some(person) = story.cast.people.get_mut(who) else { continue };
+        let Some(person) = story.people.get_mut(who) else { continue };
         if person.start.is_some_and(|class| !place::has(location, class)) {
             person.start = None;
         }
@@ -247,7 +212,7 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
             person.relation = None;
             let fault = Fault::new(
                 FaultCode::PPlace,
-                crate::order::agent(who),
+                agent(who),
                 format!(
                     "`{quote}` needs a room or an elevator with a place inside, which this map does not have{}",
                     place::open_plan(location)
@@ -261,8 +226,8 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
 }
 
 fn people(request: &Request, story: &Story, reading: &mut Reading) {
-    let from_context = pattern::role_of(&request.social_context);
-    for (i, person) in story.cast.people.iter().enumerate() {
+    let from_context = Reader::shipped().scene(&request.social_context).role;
+    for (i, person) in story.people.iter().enumerate() {
         let number = u32::try_from(i + 1).unwrap_or(u32::MAX);
         let generic = person.role.is_empty();
         let role = if generic {
@@ -285,9 +250,9 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
     let mut facts: Vec<(String, FactKind)> = Vec::new();
     let read = Some(u32::try_from(reading.humans.len()).unwrap_or(u32::MAX)).filter(|count| *count > 0);
     // An unguided request may still say how many there are.
-    let expected = request.expect.headcount().filter(|_| story.cast.nobody.is_none());
+    let expected = request.expect.headcount().filter(|_| !story.nobody);
     if let Some(count) = read.or(expected) {
-        let quote = match (&story.cast.count_quote, request.expect.humans) {
+        let quote = match (&story.count_quote, request.expect.humans) {
             (Some(quote), _) => quote.clone(),
             (None, Some(humans)) => format!("expect.humans = {humans}"),
             (None, None) if read.is_none() => "expect.groups".to_owned(),
@@ -295,21 +260,19 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
         };
         facts.push((quote, FactKind::Humans(count)));
     }
-    let id = |i: usize| HumanId::new(u32::try_from(i + 1).unwrap_or(u32::MAX));
-    if story.cast.people.is_empty() && (read.is_some() || expected.is_some()) {
+    let id = human_id;
+    if story.people.is_empty() && (read.is_some() || expected.is_some()) {
         let groups = (1..).map(GroupId).zip(&request.expect.groups);
         facts.extend(groups.map(|(group, members)| {
             let members = members.iter().copied().map(HumanId::new).collect();
             ("expect.groups".to_owned(), FactKind::Group { group, members })
         }));
     }
-    for (group, members, quote) in &story.cast.groups {
-        facts.push((
-            quote.clone(),
-            FactKind::Group { group: *group, members: members.iter().copied().map(id).collect() },
-        ));
+    for group in &story.groups {
+        let members = group.members.iter().copied().map(id).collect();
+        facts.push((group.quote.clone(), FactKind::Group { group: group.id, members }));
     }
-    for (i, person) in story.cast.people.iter().enumerate() {
+    for (i, person) in story.people.iter().enumerate() {
         if let Some((relation, quote)) = person.relation.clone() {
             facts.push((quote, FactKind::Relates { human: id(i), relation }));
             let crosses = person.crosses.clone().filter(|_| relation == Relation::Leaving);
@@ -333,7 +296,7 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
             }
             facts.push((quote, kind));
         }
-        let twice = person.again.as_ref();
+        let twice = person.twice.as_ref();
         let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));
         if let Some(human) = reading.humans.get_mut(i).filter(|_| twice.is_some()) {
             let joint = if human.summary.is_empty() { "" } else { ", " };
@@ -342,10 +305,10 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
         facts.extend(twice);
         facts.extend(person.rules.iter().flat_map(|read| facts_of_rule(id(i), read)));
     }
-    for (quote, kind) in order::facts(story) {
-        order::tell(&kind, &mut reading.humans);
-        facts.push((quote, kind));
+    for Before { first, then, at_door, quote } in &story.order {
+        facts.push((quote.clone(), FactKind::Before { first: *first, then: *then, at_door: *at_door }));
     }
+    story.order.iter().for_each(|before| before.tell(&mut reading.humans));
     if let Some((class, quote)) = &story.place {
         facts.push((quote.clone(), FactKind::Place(*class)));
         reading.place = Some(*class);
@@ -412,7 +375,7 @@ fn errand(task: &Task, location: &Location, reading: &mut Reading) {
 /// Says where the robot's way begins or ends otherwise than its task says by name.
 fn ends((story, task): (&Story, &Task), request: &Request, location: &Location, reading: &mut Reading) {
     let ends_of = reading.pattern.as_deref().and_then(crate::card::card);
-    let car = story.cast.people.iter().any(|person| {
+    let car = story.people.iter().any(|person| {
         let inside = person
             .relation
             .as_ref()
@@ -480,56 +443,6 @@ fn ends((story, task): (&Story, &Task), request: &Request, location: &Location, 
 /// Said of every request with a social context.
 pub const CONTEXT_NOTE: &str = "of the social context, only roles and pace are used";
 
-/// Words that want a deed more than once; what somebody does is played once.
-const OFTEN: &[&str] =
-    &["again and again", "over and over", "time and again", "repeatedly", "several times", "many times"];
-
-/// How long somebody who blocks the robot again and again does so, and leaves it its way in between, s.
-const BLOCKS_S: f64 = 5.0;
-const YIELDS_S: f64 = 2.0;
-/// How near the robot is when it is left its way, and blocked again, m: each time a little farther, so that no two rules are one.
-const TURNS_M: [(f64, f64); 2] = [(3.0, 4.0), (3.5, 4.5)];
-
-/// `obstructs it again and again` is played three times, with its way free in between; of other deeds it is said that they
-/// are played once.
-fn again_and_again(rough: &str, story: &mut Story) {
-    let lower = rough.to_lowercase();
-    let said: Vec<&str> = OFTEN.iter().copied().filter(|words| lower.contains(words)).collect();
-    let Some(words) = said.first() else { return };
-    let blocks = |person: &&mut Person| matches!(person.rules.as_slice(), [only] if only.rule.act == Action::Block && !only.lasts);
-    // Of several it is not known who is meant.
-    let [person] = &mut *story.cast.people.iter_mut().filter(blocks).collect::<Vec<_>>() else {
-        let once = |words: &&str| {
-            let message = format!(
-                "`{words}`: what somebody does is played once; ask for somebody more who does it, or for how long it lasts"
-            );
-            Fault::new(FaultCode::PRead, "rough_scenario", message).about([*words])
-        };
-        story.problems.splice(0..0, said.iter().map(once));
-        return;
-    };
-    let Some(first) = person.rules.first_mut().map(|only| {
-        only.rule.for_s = Some(BLOCKS_S);
-        only.clone()
-    }) else {
-        return;
-    };
-    for (yields_m, blocks_m) in TURNS_M {
-        for (act, m, secs) in [(Action::GiveWay, yields_m, YIELDS_S), (Action::Block, blocks_m, BLOCKS_S)] {
-            let rule = Rule {
-                when: vec![Trigger::RobotNear(m)],
-                act,
-                gesture: None,
-                for_s: Some(secs),
-                latched: true,
-                ..Rule::default()
-            };
-            person.rules.push(ReadRule { rule, stated: true, then: true, ..first.clone() });
-        }
-    }
-    story.cast.notes.push(format!("`{words}` was read as three times, with the way free in between"));
-}
-
 /// Says where the map has no place of a name, so that another of its kind is taken.
 fn other_places(location: &Location, reading: &mut Reading) {
     let mut problems = Vec::new();
@@ -545,24 +458,13 @@ fn other_places(location: &Location, reading: &mut Reading) {
     reading.problems.append(&mut problems);
 }
 
-/// Says of doors that people open how they open.
-fn doors(story: &Story, location: &Location, reading: &mut Reading) {
-    let how = if location.doors.is_empty() {
-        "this map declares no doors; its openings are always open"
-    } else {
-        "doors open and close by themselves for whoever comes near, as the map says"
-    };
-    reading.notes.extend(story.doors.iter().map(|quote| format!("`{quote}`: {how}")));
-}
-
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     named_way::rest(task, request, location, reading);
     errand(task, location, reading);
     ends((story, task), request, location, reading);
     other_places(location, reading);
-    doors(story, location, reading);
     reading.problems.append(&mut story.problems);
-    reading.notes.append(&mut story.cast.notes);
+    reading.notes.append(&mut story.notes);
     for (i, human) in reading.humans.iter().enumerate() {
         if human.summary.is_empty() && request.rough_scenario.is_some() {
             reading.notes.push(format!("nothing is said of what human_{} does; they walk their path", i + 1));

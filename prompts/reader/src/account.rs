@@ -116,6 +116,7 @@ impl Fate {
             }
             Says::From(..) => (Self::Read, 3),
             Says::NotRead | Says::RobotSays(None, _) => (Self::NotRead, 3),
+            Says::After(None, _) => (Self::Background(Background::Comment), 0),
             Says::NotPlayed(why) => (Self::NotPlayed(why.clone()), 2),
             Says::Background(reason) => (Self::Background(*reason), 0),
             Says::Introduce(_)
@@ -128,6 +129,9 @@ impl Fate {
             | Says::RobotSays(Some(_), _)
             | Says::Then(..)
             | Says::RobotFirst(_)
+            | Says::After(Some(_), _)
+            | Says::Queue(_)
+            | Says::Twice(..)
             | Says::Goes
             | Says::Happens(..)
             | Says::There
@@ -281,8 +285,9 @@ fn joined(pieces: Vec<Piece>) -> Vec<Piece> {
             }
             // Words that a rewrite put in place of others stand where those stand.
             Some(last) if piece.at.start < last.at.end => {
-                if piece.fate == Fate::NotRead {
-                    last.fate = Fate::NotRead;
+                let reads = piece.fate == Fate::Read && matches!(last.fate, Fate::Background(_));
+                if piece.fate == Fate::NotRead || reads {
+                    last.fate = piece.fate;
                 }
                 last.at.end = last.at.end.max(piece.at.end);
             }

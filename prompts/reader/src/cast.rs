@@ -8,8 +8,11 @@ use std::ops::Range;
 
 use socrates_model::{Gesture, Relation};
 
+use crate::lexicon::Lexicon;
+use crate::name::gender;
 use crate::noun::{Head, Noun, Pick};
 use crate::statement::{Deed, Named, Reason};
+use crate::token::{Sort, Token};
 
 /// People, by their numbers from 0.
 pub type People = Vec<usize>;
@@ -19,13 +22,17 @@ pub(crate) const ANYBODY: &[&str] =
     &["person", "people", "human", "pedestrian", "individual", "participant", "actor", "agent", "somebody"];
 /// How many several people are of whom no number is said.
 const SEVERAL: usize = 2;
-/// No phrase means more people than this.
-const MOST: usize = 30;
-#[derive(Default)]
+/// No phrase means more people than this, which is one more than a scenario may have.
+const MOST: usize = 41;
+
+/// Everybody of whom was spoken so far.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Cast {
     pub(crate) roles: Vec<String>,
     pub(crate) vague: People,
     pub(crate) plain: People,
+    /// Those of whom is told what they do, or how fast.
+    pub(crate) active: People,
     /// People who were named last.
     pub(crate) last: People,
     /// People who were named before them.
@@ -63,6 +70,8 @@ pub(crate) struct Cast {
     pub(crate) related: Option<Relation>,
     /// How everybody stands to it.
     pub(crate) relations: BTreeMap<usize, Relation>,
+    /// Those who were told last to come somehow, and those before them.
+    pub(crate) met: (People, People),
     /// Of whom a pronoun is not said: those who do it.
     pub(crate) excluded: People,
     /// What was said as a condition, and for which nobody has waited yet, by tokens.
@@ -74,6 +83,23 @@ pub(crate) struct Cast {
 }
 
 impl Cast {
+    /// People of whom was spoken before, by their roles; `last` are those of whom it was last. They are called by their numbers as well.
+    pub(crate) fn of(known: &[String], last: &[usize], lexicon: &Lexicon) -> Self {
+        let roles: Vec<(String, Option<bool>)> = known.iter().map(|role| head_of(role, lexicon)).collect();
+        let female = roles.iter().enumerate().filter_map(|(person, (_, female))| Some((person, (*female)?))).collect();
+        let names = (0..roles.len()).flat_map(|person| {
+            let called = |word: &&str| (format!("{word} {}", person + 1), person);
+            ["human", "person"].iter().map(called).collect::<Vec<_>>()
+        });
+        Self {
+            names: names.collect(),
+            roles: roles.into_iter().map(|(role, _)| role).collect(),
+            female,
+            last: if known.len() == 1 { vec![0] } else { last.to_vec() },
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn people(&mut self, nouns: &Named) -> People {
         let mut all = People::new();
         let mut fresh = false;
@@ -335,6 +361,10 @@ impl Cast {
             }
             return named;
         }
+        // `A few people are in the elevator. Two people leave it.`: two of them.
+        if anybody && noun.count.is_some() && self.is_idle_set() && count < self.set.len() {
+            return self.picks(noun, &self.set.clone()).unwrap_or_default();
+        }
         let known: People = match () {
             () if anybody && noun.known_by.is_some() => {
                 let known = |person: &usize| self.relations.get(person).copied() == noun.known_by;
@@ -392,6 +422,12 @@ impl Cast {
             (None, Pick::None) => People::new(),
             (None, _) => self.new_people(noun, role),
         }
+    }
+
+    /// Whether those who were named together are anybody, and nothing is told of them yet but that they are there.
+    fn is_idle_set(&self) -> bool {
+        let idle = |person: &usize| !self.active.contains(person) && !self.relations.contains_key(person);
+        !self.set.is_empty() && self.picked.is_empty() && self.anybody(&self.set) && self.set.iter().all(idle)
     }
 
     /// Somebody by name, who may have a role beside it.
@@ -473,6 +509,16 @@ impl Cast {
             self.set.extend(people.iter().copied());
         }
         people
+    }
+}
+
+/// The word by which somebody of a role is called, and whether it is a woman's or a man's: of several words the last that is a role.
+fn head_of(role: &str, lexicon: &Lexicon) -> (String, Option<bool>) {
+    let tokens = crate::lex::lex(role, &lexicon.words);
+    let is_role = |token: &&Token| token.is(Sort::Role) || token.is(Sort::People);
+    match tokens.iter().rfind(is_role) {
+        Some(word) => (word.lemma.clone(), gender(word)),
+        None => (role.to_lowercase(), None),
     }
 }
 

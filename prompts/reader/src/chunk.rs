@@ -12,13 +12,15 @@ use crate::noun::{Head, Noun};
 use crate::phrase::noun;
 use crate::token::{Bent, Kind, Mark, OWNS, Sort, Sorts, Token};
 
-/// A distance or a time.
+/// A distance, a time or a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Amount {
     /// m.
     Distance(f64),
     /// s.
     Time(f64),
+    /// m/s.
+    Speed(f64),
 }
 
 /// What a chunk is.
@@ -71,6 +73,7 @@ impl fmt::Display for Chunk {
             Is::Place(class) => write!(f, "[place {}]", class.map_or("nowhere", |class| class.name())),
             Is::Amount(Amount::Distance(m)) => write!(f, "[{m} m]"),
             Is::Amount(Amount::Time(secs)) => write!(f, "[{secs} s]"),
+            Is::Amount(Amount::Speed(mps)) => write!(f, "[{mps} m/s]"),
             Is::Mark(mark) => write!(f, "<{mark:?}>"),
             Is::Word => f.write_str(&self.lemma),
         }
@@ -125,7 +128,10 @@ fn chunk(tokens: &[Token], at: usize, lexicon: &Lexicon) -> (Is, usize) {
         && token.is(Sort::Verb)
         && before
             .is_some_and(|before| !before.is(Sort::Definite) && !before.is(Sort::At) && !before.is_mark(Mark::Stop));
-    let place = place(tokens, at, lexicon).filter(|(_, end)| {
+    // `a few people exit`
+    let people = |before: &Token| before.is(Sort::People) || before.is(Sort::Role) && before.bent == Bent::S;
+    let does = token.bent == Bent::Base && token.is(Sort::Verb) && before.is_some_and(people);
+    let place = place(tokens, at, lexicon).filter(|(_, end)| *end > at + 1 || !does).filter(|(_, end)| {
         let more = tokens.get(at + 1).is_some_and(|next| next.spelled.len() > 1 && next.number().is_none());
         !acts || *end > at + 1 && more
     });
@@ -216,13 +222,20 @@ fn amount(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Amount, usi
         // `a meter and a half`
         let more = half(end + 1, "and") && half(end + 3, "half");
         let number = if more { number + 0.5 } else { number };
+        // `0.6 m/s`, `0.6 meters per second`
+        let (stroke, per) = (end + 1, end + 1 + usize::from(half(end + 1, "per")));
+        let second = |at: usize| tokens.get(at).and_then(|token| words.seconds.get(&token.lemma)).copied();
+        let touch = tokens.get(stroke).is_some_and(|next| next.at.start == unit.at.end + 1);
+        if let Some(secs) = second(per).filter(|secs| (per > stroke || touch) && *secs > 0.0) {
+            return Some((Amount::Speed(number * m / secs), per + 1));
+        }
         return Some((Amount::Distance((number * m * 1000.0).round() / 1000.0), end + 1 + 3 * usize::from(more)));
     }
     words.seconds.get(&unit.lemma).map(|secs| (Amount::Time(number * secs), end + 1))
 }
 
 /// A place with what belongs to its name: `the narrow aisle`, `room 214`.
-fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<PlaceClass>, usize)> {
+pub(crate) fn place(tokens: &[Token], at: usize, lexicon: &Lexicon) -> Option<(Option<PlaceClass>, usize)> {
     let mut start = at;
     while tokens.get(start).is_some_and(|token| {
         token.is(Sort::Indefinite)

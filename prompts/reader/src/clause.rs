@@ -40,6 +40,13 @@ pub(crate) struct Condition {
     pub(crate) clause: Clause,
 }
 
+impl Condition {
+    /// Whether it names people and tells what they do.
+    pub(crate) fn tells_of_people(&self) -> bool {
+        !self.clause.subject.is_empty() && !self.clause.acts.is_empty()
+    }
+}
+
 /// One act of a clause, or another phrase that matches a row.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Predicate {

@@ -109,10 +109,18 @@ impl Maker<'_> {
             if robot {
                 self.say(tokens, Says::Background(Background::Errand));
             } else if !clause.subject.is_empty() {
-                self.say(tokens, Says::Pace(clause.subject.clone(), pace.value));
+                // `suddenly stops` tells of no pace.
+                let walks = |act: &Predicate| {
+                    let frame = self.lexicon.frames.get(act.row);
+                    frame.is_some_and(|frame| frame.goes || frame.relate.is_some_and(|relation| !relation.stands()))
+                };
+                let walks = clause.acts.is_empty() || clause.acts.iter().any(walks);
+                self.say(tokens, if walks { Says::Pace(clause.subject.clone(), pace.value) } else { Says::Goes });
             }
         }
-        self.rest(clause);
+        // What describes somebody of whom the clause says nothing more may be what they do.
+        let idle = !robot && !clause.subject.is_empty() && !self.tells_since(start);
+        self.rest(clause, idle);
         // A reason for which nobody does anything yet is one for what comes.
         let own = self.found.get(start..).unwrap_or_default();
         let does = own.iter().any(|own| matches!(own.says, Says::Do(_)));
@@ -137,8 +145,7 @@ impl Maker<'_> {
 
     /// A condition that is no reason: `while the other walks on` is a clause of its own.
     pub(crate) fn beside(&mut self, condition: &Condition) {
-        let own = !condition.clause.subject.is_empty() && !condition.clause.acts.is_empty();
-        if matches!(condition.tie, Tie::While | Tie::When) && own {
+        if matches!(condition.tie, Tie::While | Tie::When | Tie::After) && condition.tells_of_people() {
             self.clause(&condition.clause);
         } else {
             self.say(condition.clause.tokens.clone(), Says::NotRead);
@@ -195,14 +202,35 @@ impl Maker<'_> {
 
     /// Somebody does something, to the robot or to nobody.
     pub(crate) fn person(&mut self, act: &Predicate, frame: &Frame, whole: &Whole<'_>, who: Named) {
-        let tokens = act.tokens.clone();
+        let (tokens, clause) = (act.tokens.clone(), whole.clause);
         let waits = !whole.when.is_empty() && frame.act.is_some();
+        // A side that is ruled out is none.
+        if act.not && frame.side.is_some() {
+            return self.say(tokens, Says::NotRead);
+        }
         let relation = frame.relate.filter(|_| !act.not && !waits);
         if relation.is_some() || frame.side.is_some() {
             self.say(tokens.clone(), Says::Relate(who.clone(), relation, frame.side));
         }
+        // `First a nurse crosses, then a doctor crosses.`
+        let comes = |relation: Relation| !relation.stands() && relation != Relation::Staying;
+        let after = |condition: &Condition| condition.tie == Tie::After && condition.tells_of_people();
+        let then = whole.clause.join == Join::Then && whole.clause.own || whole.clause.conditions.iter().any(after);
+        if then && relation.is_some_and(comes) {
+            self.say(tokens.clone(), Says::After(None, who.clone()));
+        }
         if frame.group {
             self.say(tokens.clone(), Says::Group(who.clone()));
+        }
+        if frame.twice && !act.not {
+            let place = clause.places.first().filter(|_| frame.relate.is_none()).and_then(|at| at.class);
+            self.say(tokens.clone(), Says::Twice(who.clone(), place));
+        }
+        if frame.robot_first && relation.is_some() {
+            self.say(tokens.clone(), Says::RobotFirst(None));
+        }
+        if frame.queue {
+            self.say(tokens.clone(), Says::Queue(who.clone()));
         }
         // Whoever crosses after some time, or once they may, sets off then.
         let sets_off =
@@ -223,14 +251,14 @@ impl Maker<'_> {
                 act.object.as_ref().filter(|_| act.sign.is_some()).filter(somebody).map(|noun| vec![noun.clone()]);
             let deed = Deed { whom, ..whole.deed(who, does, act, frame) };
             self.say(tokens, Says::Do(deed));
-        } else if let Some(cue) = frame.cue.filter(|_| !act.not) {
+        } else if let Some(cue) = frame.cue.filter(|_| !act.not && relation.is_none()) {
             let reason = Reason { who: None, cue, sign: None, amount: whole.clause.within_m.map(|m| m.value) };
             self.say(tokens.clone(), Says::Introduce(who));
             self.say(tokens, Says::Then(reason, false));
         } else if frame.asks || frame.relate == Some(Relation::Leaving) && none {
             // `nobody gets out`: then all stay, of whom nothing was read.
             self.say(tokens, Says::NotRead);
-        } else if relation.is_none() && !frame.group {
+        } else if relation.is_none() && !frame.group && !frame.twice {
             // What is denied, or says no more than that somebody is there.
             let walks = frame.plain && frame.goes && !act.not && act.object.is_none();
             self.say(tokens, if walks { Says::Walks(who) } else { Says::Noted(who) });
@@ -322,7 +350,7 @@ impl Maker<'_> {
         let frame = |act: &Predicate| self.lexicon.frames.get(act.row);
         // `from the ward to the exit`
         let route = clause.subject.is_empty()
-            && clause.acts.is_empty()
+            && clause.acts.iter().all(|act| frame(act).is_some_and(|frame| frame.plain))
             && clause.places.len() > 1
             && clause.places.iter().any(|at| at.from || at.via)
             && clause.places.iter().any(|at| at.to);
@@ -368,7 +396,12 @@ impl Maker<'_> {
                 |act: &Predicate| !act.not && frame(act).is_some_and(|frame| frame.relate == Some(Relation::Leaving));
             let leaves = !robot && number == 0 && clause.acts.iter().any(leaves);
             let rank = if leaves && matches!(class, Some(PlaceClass::Room | PlaceClass::Elevator)) { 1 } else { rank };
+            // The place of the second meeting is told with it.
+            let again = |act: &Predicate| frame(act).is_some_and(|frame| frame.twice && frame.relate.is_none());
             let says = match class {
+                Some(_) if clause.acts.iter().any(again) => Says::Goes,
+                // Out of which room somebody comes is not where they are met.
+                Some(PlaceClass::Room) if leaves => Says::Goes,
                 None => Says::NotPlayed("no map has such a place".to_owned()),
                 Some(class) if (goes || part == Some(Part::Start)) && *to => Says::RobotGoal(*class),
                 Some(class) if (goes || part == Some(Part::Goal)) && *from => Says::RobotStart(*class),

@@ -57,7 +57,9 @@ impl Parser<'_> {
         let before = self.chunks.get(start..at).unwrap_or_default();
         let first = before.iter().rev().find(|chunk| !is_before_a_noun(chunk));
         let person = self.chunks.get(at).is_some_and(|chunk| self.lexicon.words.sounds_like_a_person(&chunk.lemma));
-        own && !person && first.is_some_and(|chunk| PREPOSITIONS.iter().any(|sort| chunk.word(*sort)))
+        // `for one who walks away`: a number may be somebody.
+        let counts = self.chunks.get(at).is_some_and(|chunk| self.lexicon.words.numbers.contains_key(&chunk.lemma));
+        own && !person && !counts && first.is_some_and(|chunk| PREPOSITIONS.iter().any(|sort| chunk.word(*sort)))
     }
 }
 

@@ -13,6 +13,8 @@ use crate::statement::{Deed, Named, Reason, Says, Statement};
 /// Statements of people, and the role of everybody.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Told {
+    /// How many of them were known before the text.
+    pub(crate) known: usize,
     pub(crate) roles: Vec<String>,
     /// Those of whom is spoken in general, without a number: `people step in front of it`.
     pub(crate) vague: People,
@@ -23,9 +25,9 @@ pub(crate) struct Told {
     pub(crate) doubts: Vec<Range<usize>>,
 }
 
-/// Finds out who is meant.
-pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
-    let mut cast = Cast::default();
+/// Finds out who is meant, of those who are known and those whom the text names.
+pub(crate) fn told(statements: &[Statement<Named>], mut cast: Cast) -> Told {
+    let known = cast.roles.len();
     let mut told = Vec::new();
     for statement in statements {
         cast.begin(statement);
@@ -42,7 +44,7 @@ pub(crate) fn told(statements: &[Statement<Named>]) -> Told {
     }
     cast.doubts.extend(cast.waiting.take());
     let Cast { roles, vague, plain, doubts, .. } = cast;
-    let told = Told { roles, vague, plain, statements: told, doubts };
+    let told = Told { known, roles, vague, plain, statements: told, doubts };
     Told { statements: doubted(&told), ..told }
 }
 
@@ -59,7 +61,7 @@ fn doubted(told: &Told) -> Vec<Statement<People>> {
     let anybody = |person: &usize| told.roles.get(*person).is_some_and(|role| ANYBODY.contains(&role.as_str()));
     let all_anybody = (0..told.roles.len()).all(|person| anybody(&person));
     let unknown: People =
-        (0..told.roles.len()).filter(|person| !known(*person) || anybody(person) && !all_anybody).collect();
+        (told.known..told.roles.len()).filter(|person| !known(*person) || anybody(person) && !all_anybody).collect();
     let mut all = told.statements.clone();
     all.extend(opposites(told));
     if unknown.len() < told.roles.len() {
@@ -81,6 +83,9 @@ fn people_of(says: &Says<People>) -> &[usize] {
         | Says::Walks(who)
         | Says::Relate(who, ..)
         | Says::Group(who)
+        | Says::After(_, who)
+        | Says::Queue(who)
+        | Says::Twice(who, _)
         | Says::Pace(who, _) => who,
         Says::Do(deed) => &deed.who,
         Says::RobotSays(..)
@@ -170,12 +175,22 @@ impl Cast {
                 if let Some(relation) = relation {
                     self.relations.extend(who.iter().map(|person| (*person, *relation)));
                 }
+                if relation.is_some_and(|relation| !relation.stands()) && self.met.1 != who {
+                    self.met = (std::mem::take(&mut self.met.1), who.clone());
+                }
                 Says::Relate(who, *relation, *side)
             }
             Says::Noted(who) => Says::Noted(self.people(who)),
+            // `it signals him to go ahead, and he walks`: as he was told.
+            Says::Walks(who) if self.asked == Some(Gesture::Proceed) && self.pending.iter().any(is_word) => {
+                let deed = self.deed(&Deed::of(who.clone(), Act::Navigate));
+                Says::Do(deed)
+            }
             Says::Walks(who) => Says::Walks(self.people(who)),
             Says::Group(who) => Says::Group(self.people(who)),
-            Says::Pace(who, mps) => Says::Pace(self.people(who), *mps),
+            Says::Queue(who) => Says::Queue(self.people(who)),
+            Says::Twice(who, place) => Says::Twice(self.people(who), *place),
+            Says::Pace(who, mps) => Says::Pace(self.active(who), *mps),
             // `a second one does so`: stands to the robot's way as the first does.
             Says::Do(deed)
                 if deed.obeys
@@ -215,6 +230,11 @@ impl Cast {
             }
             Says::From(who, class) => Says::From(self.people(who), *class),
             Says::RobotFirst(_) => Says::RobotFirst(Some(self.last.clone())),
+            Says::After(_, who) => {
+                let who = self.people(who);
+                let first = Some(self.met.0.clone()).filter(|first| !first.iter().any(|one| who.contains(one)));
+                Says::After(first, who)
+            }
             Says::Happens(class, rank) => Says::Happens(*class, *rank),
             Says::There => Says::There,
             Says::GoalThere => Says::GoalThere,
@@ -226,6 +246,13 @@ impl Cast {
             Says::Goes => Says::Goes,
             Says::NotRead => Says::NotRead,
         })
+    }
+
+    /// People of whom something is told.
+    fn active(&mut self, who: &Named) -> People {
+        let who = self.people(who);
+        self.active.extend(&who);
+        who
     }
 
     pub(crate) fn reason(&mut self, reason: &Reason<Named>) -> Reason<People> {
@@ -249,7 +276,7 @@ impl Cast {
     }
 
     pub(crate) fn deed(&mut self, deed: &Deed<Named>) -> Deed<People> {
-        let who = self.people(&deed.who);
+        let who = self.active(&deed.who);
         let whom = deed.whom.as_ref().map(|whom| {
             let (last, before) = (self.last.clone(), self.before.clone());
             self.excluded.clone_from(&who);
@@ -274,6 +301,13 @@ impl Cast {
                     self.pending.clone()
                 }
             };
+        }
+        // Nobody answers their own word: a pronoun in it means somebody else.
+        let own = |reason: &Reason<People>| {
+            reason.cue == Cue::Says && reason.who.as_ref().is_some_and(|speaker| *speaker == who)
+        };
+        if when.iter().any(own) {
+            self.doubts.extend(deed.who.iter().map(|noun| noun.tokens.clone()));
         }
         let (mut act, mut says, mut whom) = (deed.act, deed.says, whom);
         let as_robot = when.iter().find_map(|reason| match reason.cue {
@@ -305,7 +339,7 @@ impl Cast {
         }
         // `steps aside when it asks him to`
         for reason in when.iter_mut().filter(|reason| reason.cue == Cue::Says && reason.sign.is_none()) {
-            reason.sign = sign_for(act);
+            reason.sign = act.asked_by();
         }
         self.last.clone_from(&who);
         if let Some(whom) = whom.as_ref().filter(|whom| act == Act::Sign && !whom.is_empty()) {
@@ -352,13 +386,7 @@ impl Cast {
     }
 }
 
-/// The sign by which somebody is asked for an act.
-const fn sign_for(act: Act) -> Option<Gesture> {
-    match act {
-        Act::GiveWay | Act::RunAway => Some(Gesture::ExcuseMe),
-        Act::StandStill | Act::Block => Some(Gesture::Wait),
-        Act::Follow | Act::Approach => Some(Gesture::FollowMe),
-        Act::Navigate => Some(Gesture::Proceed),
-        Act::Look | Act::Startle | Act::TurnBack | Act::Sign => None,
-    }
+/// Whether somebody waits for a word of the robot.
+fn is_word(reason: &Reason<People>) -> bool {
+    reason.cue == Cue::Says && reason.who.is_none()
 }

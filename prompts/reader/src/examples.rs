@@ -11,7 +11,8 @@ pub struct Example<'a> {
     pub row: &'a str,
     /// The text.
     pub text: &'a str,
-    /// A line of the story; of `rewrites.toml` and `scopes.toml` a text that is read the same way.
+    /// A line of the story; of `rewrites.toml` and `scopes.toml` a text that is read the same way;
+    /// of `edits.toml` what the first wish of the text asks for.
     pub gives: &'a str,
     /// Whether the text gives it, or must not.
     pub does: bool,
@@ -24,7 +25,11 @@ pub(crate) fn all(lexicon: &Lexicon) -> Vec<Example<'_>> {
     let signs = lexicon.signs.iter().flat_map(|row| of("signs", &row.gives, &row.reads, &row.not, &row.gives));
     let rewrites = lexicon.rewrites.iter().flat_map(|row| of("rewrites", &row.id, &row.reads, &row.not, &row.gives));
     let scopes = lexicon.scopes.iter().flat_map(|row| of("scopes", &row.id, &row.reads, &row.not, &row.gives));
-    frames.chain(places).chain(signs).chain(rewrites).chain(scopes).collect()
+    let edits = lexicon.edits.rows.iter().flat_map(|row| {
+        let name = row.edit.name();
+        of("edits", name, &row.reads, &row.not, name)
+    });
+    frames.chain(places).chain(signs).chain(rewrites).chain(scopes).chain(edits).collect()
 }
 
 fn of<'a>(

@@ -24,12 +24,16 @@ pub(crate) fn missing(chunks: &[Chunk], story: &Story) -> Vec<Range<usize>> {
 
 fn holds_amount(story: &Story, amount: Amount) -> bool {
     let same = |own: f64, said: f64| (own - said).abs() < 1e-6;
+    if let Amount::Speed(mps) = amount {
+        return story.people.iter().any(|person| person.pace_mps.is_some_and(|own| same(own, mps)));
+    }
     let of = |step: &Step| {
         let reasons = || step.when.iter().chain(&step.until);
         match amount {
             Amount::Distance(m) => {
                 reasons().any(|reason| reason.cue != Cue::After && reason.amount.is_some_and(|own| same(own, m)))
             }
+            Amount::Speed(_) => false,
             Amount::Time(secs) => {
                 let after = |own: f64| same(own, secs);
                 step.for_s.is_some_and(after)

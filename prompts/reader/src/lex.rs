@@ -25,7 +25,25 @@ pub(crate) fn lex(text: &str, words: &Words) -> Vec<Token> {
             marks(start, piece, text, words, &mut tokens);
         }
     }
-    unnumbered(corrected(tokens, words), words)
+    unnumbered(corrected(summed(tokens, words), words), words)
+}
+
+/// The tokens with `forty-five` and `forty five` as one number.
+fn summed(tokens: Vec<Token>, words: &Words) -> Vec<Token> {
+    let named = |token: &Token| words.numbers.get(&token.lemma).copied().filter(|_| token.is_said());
+    let mut all: Vec<Token> = Vec::with_capacity(tokens.len());
+    for token in tokens {
+        let ones = named(&token).filter(|number| (1..10).contains(number));
+        let tens = all.last().and_then(named).filter(|number| *number >= 20 && number % 10 == 0);
+        match (tens.zip(ones), all.last_mut()) {
+            (Some((tens, ones)), Some(last)) => {
+                last.kind = Kind::Number(f64::from(tens + ones));
+                last.at.end = token.at.end;
+            }
+            _ => all.push(token),
+        }
+    }
+    all
 }
 
 /// The tokens with a number that was taken back later: `three visitors sitting there, no, two.`

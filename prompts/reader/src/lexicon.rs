@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::pattern::{BadPattern, Patterns};
-use crate::rows::{Frame, PlaceRow, Rewrite, Scope, SignRow};
+use crate::rows::{Edits, Errands, Frame, PlaceRow, Rewrite, Scope, SignRow};
 use crate::token::Sort;
 use crate::words::Words;
 
@@ -21,6 +21,8 @@ pub(crate) struct Lexicon {
     pub(crate) rewrite_patterns: Patterns,
     pub(crate) scopes: Vec<Scope>,
     pub(crate) scope_patterns: Patterns,
+    pub(crate) errands: Errands,
+    pub(crate) edits: Edits,
 }
 
 /// Why a file of `data/` cannot be read.
@@ -61,6 +63,10 @@ pub struct Files<'a> {
     pub rewrites: &'a str,
     /// `scopes.toml`.
     pub scopes: &'a str,
+    /// `errands.toml`.
+    pub errands: &'a str,
+    /// `edits.toml`.
+    pub edits: &'a str,
 }
 
 /// The files as shipped.
@@ -71,6 +77,8 @@ pub const SHIPPED: Files<'static> = Files {
     signs: include_str!("../data/signs.toml"),
     rewrites: include_str!("../data/rewrites.toml"),
     scopes: include_str!("../data/scopes.toml"),
+    errands: include_str!("../data/errands.toml"),
+    edits: include_str!("../data/edits.toml"),
 };
 
 impl Lexicon {
@@ -79,8 +87,11 @@ impl Lexicon {
     /// # Errors
     /// [`BadData`] for a key or pattern that cannot be.
     pub(crate) fn read(files: Files<'_>, without: Option<&str>) -> Result<Self, BadData> {
-        let words = Words::read(files.words).map_err(|why| BadData::Toml { file: "words.toml", why: Box::new(why) })?;
-        let mut all = Self { words, ..Self::default() };
+        let bad = |file: &'static str| move |why: toml::de::Error| BadData::Toml { file, why: Box::new(why) };
+        let words = Words::read(files.words).map_err(bad("words.toml"))?;
+        let errands: Errands = toml::from_str(files.errands).map_err(bad("errands.toml"))?;
+        let edits: Edits = toml::from_str(files.edits).map_err(bad("edits.toml"))?;
+        let mut all = Self { words, errands, edits, ..Self::default() };
         all.frames = rows("frames.toml", files.frames)?;
         all.places = rows("places.toml", files.places)?;
         all.signs = rows("signs.toml", files.signs)?;

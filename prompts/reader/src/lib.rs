@@ -1,8 +1,8 @@
-//! The reader of requests: text to statements to a form. No map, no catalog of cards, no geometry, no weights.
+//! The reader of requests: text to statements to a story. No map, no catalog of cards, no geometry, no weights.
 //!
 //! ```text
-//! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story ─► form
-//!         lex       normalize    chunk     sentence        clause_says   discourse    story    form
+//! text ─► tokens ─► scene ─────► chunks ─► clauses ──────► statements ─► people ────► story
+//!         lex       normalize    chunk     sentence        clause_says   discourse    story
 //!         words     scopes       phrase    subject         times         cast           │
 //!                   rewrites     name      predicate       maker                        └─► account: what became of every word
 //!                                places    find: rows of frames, signs
@@ -55,25 +55,32 @@ mod line;
 mod story;
 mod told;
 
-mod form;
-
 mod kept;
 
 mod account;
 
 mod passes;
 
+mod errand;
+mod scene;
+mod spot;
+mod wish;
+
 mod examples;
 
 pub use account::{Fate, Piece, Read, Verdict};
 pub use cast::People;
+pub use errand::{Denied, Errand, Leg, Spot, Toward};
 pub use examples::Example;
 pub use lexicon::{BadData, Files, SHIPPED};
 pub use line::Line;
 pub use passes::Passes;
-pub use rows::{Act, Cue};
+pub use rows::{Act, Cue, Edit};
+pub use scene::{Familiar, Scene};
+pub use spot::Named;
 pub use statement::{Deed, Reason, Says, Statement};
 pub use story::{Person, Step, Story};
+pub use wish::{Whom, Wish};
 
 /// A reader with its rows.
 #[derive(Debug, Default)]
@@ -127,6 +134,76 @@ impl Reader {
     #[must_use]
     pub fn read(&self, text: &str) -> Read {
         self.passes(text).read()
+    }
+
+    /// The same of a text about people of whom was spoken before, by their roles: they come first in the story, and `last` of them are
+    /// those of whom it was last. `human_2` is the second of them.
+    #[must_use]
+    pub fn read_of(&self, text: &str, known: &[String], last: &[usize]) -> Read {
+        Passes::of(&wish::unjoined(text), cast::Cast::of(known, last, &self.0), &self.0).read()
+    }
+
+    /// What an edit asks for, wish by wish.
+    #[must_use]
+    pub fn wishes(&self, text: &str) -> Vec<Wish> {
+        wish::wishes(text, &self.0)
+    }
+
+    /// Whom words mean of people of these roles, of whom some were spoken of last.
+    #[must_use]
+    pub fn whom(&self, text: &str, known: &[String], last: &[usize]) -> Whom {
+        wish::whom(text, known, last, &self.0)
+    }
+
+    /// The clauses of a task: which places it names for the robot's way, and what for.
+    #[must_use]
+    pub fn errands(&self, text: &str) -> Vec<Errand> {
+        errand::errands(text, &self.0)
+    }
+
+    /// What a text says of a scene in general.
+    #[must_use]
+    pub fn scene(&self, text: &str) -> Scene {
+        scene::scene(text, &self.0)
+    }
+
+    /// How much of a text the reader knows.
+    #[must_use]
+    pub fn familiar(&self, text: &str) -> Familiar {
+        scene::familiar(text, &self.0)
+    }
+
+    /// The base form of a word in lower case; one that nobody knows is one of several where it ends so.
+    #[must_use]
+    pub fn base(&self, word: &str) -> String {
+        let (base, bent) = self.0.words.base(word);
+        let one = base.strip_suffix('s').filter(|one| !one.ends_with(['s', 'u', 'i']));
+        one.filter(|_| base == word && bent == token::Bent::S).map_or_else(|| base.clone(), str::to_owned)
+    }
+
+    /// How fast people of a role walk, m/s, where the word says something about it: `patient`, `child`.
+    #[must_use]
+    pub fn pace_of(&self, role: &str) -> Option<f64> {
+        self.0.words.paces.get(role).copied()
+    }
+
+    /// Whether a word in lower case may tell one place from others in a name.
+    #[must_use]
+    pub fn may_name(&self, word: &str) -> bool {
+        errand::may_name(word, self.0.words.sorts(word), &self.0)
+    }
+
+    /// Whether a word in lower case says nothing of its own, in any form.
+    #[must_use]
+    pub fn says_nothing(&self, word: &str) -> bool {
+        let words = &self.0.words;
+        words.sorts(word).and(words.sorts(&words.base(word).0)).say_nothing()
+    }
+
+    /// The places that a text names.
+    #[must_use]
+    pub fn places(&self, text: &str) -> Vec<Named> {
+        spot::places(text, &self.0)
     }
 }
 

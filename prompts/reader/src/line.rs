@@ -15,6 +15,8 @@ pub enum Line {
     Pace(usize),
     /// Somebody is in a group.
     Group(usize),
+    /// Somebody meets the robot twice.
+    Twice(usize),
     /// Somebody's step, by its number from 0.
     Step(usize, usize),
     /// Where it happens.
@@ -27,6 +29,8 @@ pub enum Line {
     RobotVia(PlaceClass),
     /// The robot is there before somebody.
     RobotFirst(usize),
+    /// The first comes before the second.
+    Before(usize, usize),
     /// The robot makes a sign.
     RobotSays(Gesture),
 }
@@ -41,26 +45,39 @@ impl Line {
             | Self::Side(person)
             | Self::Pace(person)
             | Self::Group(person)
+            | Self::Twice(person)
             | Self::RobotFirst(person)
             | Self::Step(person, _) => Some(*person),
-            Self::Place(_) | Self::RobotStart(_) | Self::RobotGoal(_) | Self::RobotVia(_) | Self::RobotSays(_) => None,
+            Self::Before(..)
+            | Self::Place(_)
+            | Self::RobotStart(_)
+            | Self::RobotGoal(_)
+            | Self::RobotVia(_)
+            | Self::RobotSays(_) => None,
         }
     }
 
     /// Whether it is about nobody who is taken out; it names the others by their new numbers.
     pub(crate) fn without(&mut self, out: &[usize]) -> bool {
+        let anew = |person: usize| person - out.iter().filter(|gone| **gone < person).count();
+        if let Self::Before(first, then) = self {
+            let stays = !out.contains(first) && !out.contains(then);
+            (*first, *then) = (anew(*first), anew(*then));
+            return stays;
+        }
         let (Self::Person(person)
         | Self::Relation(person, _)
         | Self::Side(person)
         | Self::Pace(person)
         | Self::Group(person)
+        | Self::Twice(person)
         | Self::RobotFirst(person)
         | Self::Step(person, _)) = self
         else {
             return true;
         };
         let stays = !out.contains(person);
-        *person -= out.iter().filter(|gone| **gone < *person).count();
+        *person = anew(*person);
         stays
     }
 }

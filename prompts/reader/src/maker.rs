@@ -80,16 +80,30 @@ impl Maker<'_> {
         }
     }
 
-    pub(crate) fn rest(&mut self, clause: &Clause) {
+    /// Whether a statement since that number says more than who is there, and where.
+    pub(crate) fn tells_since(&self, start: usize) -> bool {
+        let says_no_more = |statement: &Statement<Named>| {
+            matches!(
+                statement.says,
+                Says::Introduce(_) | Says::Background(_) | Says::Goes | Says::NotRead | Says::Happens(..) | Says::There
+            )
+        };
+        !self.found.get(start..).unwrap_or_default().iter().all(says_no_more)
+    }
+
+    /// The words of a clause of which nothing was made; those that describe may be an act all the same in a clause that says nothing else
+    /// of people (`idle`).
+    pub(crate) fn rest(&mut self, clause: &Clause, idle: bool) {
         let robot = clause.subject.iter().any(|noun| noun.head == Head::Robot);
         let reason = if robot { Background::Errand } else { Background::Looks };
         for run in runs(&clause.looks) {
             self.say(run, Says::Background(reason));
         }
-        for run in runs(&clause.described) {
+        let described = if idle { &[][..] } else { &clause.described[..] };
+        for run in runs(described) {
             self.say(run, Says::Background(if robot { Background::Errand } else { Background::Setting }));
         }
-        let left: Vec<usize> = clause.left.iter().copied().filter(|at| !clause.described.contains(at)).collect();
+        let left: Vec<usize> = clause.left.iter().copied().filter(|at| !described.contains(at)).collect();
         for run in runs(&left) {
             self.say(run, Says::NotRead);
         }

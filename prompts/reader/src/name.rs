@@ -33,10 +33,13 @@ impl Reader<'_> {
         let token = self.peek()?;
         let next = self.tokens.get(self.at + 1);
         // `lets her go first`
-        let lets =
-            self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).is_some_and(|before| before.is(Sort::Lets));
-        let does =
-            lets && next.is_some_and(|next| next.is(Sort::Verb) && next.bent == Bent::Base && !next.is(Sort::Empty));
+        let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+        let begins = before.is_none_or(|before| before.is_mark(Mark::Stop));
+        let lets = begins || before.is_some_and(|before| before.is(Sort::Lets));
+        let does = lets
+            && next.is_some_and(|next| {
+                next.is(Sort::Verb) && next.bent == Bent::Base && !next.is(Sort::Empty) && !next.is(Sort::Role)
+            });
         let owns = token.is(Sort::Possessive) && next.is_some_and(Self::can_be_owned) && !does;
         let head = match () {
             () if token.is(Sort::He) && !owns => Head::He,

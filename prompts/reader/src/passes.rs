@@ -4,15 +4,17 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::account::{Fate, Piece, Read, account};
+use crate::cast::Cast;
 use crate::chunk::{Chunk, chunks};
 use crate::clause::{Clause, Predicate};
 use crate::clause_says::statements;
 use crate::discourse::{Told, told};
 use crate::lexicon::Lexicon;
 use crate::normalize::{Scene, normalize};
+use crate::noun::{Head, Pick};
 use crate::sentence::clauses;
 use crate::statement::{Named, Says, Statement};
-use crate::story::{Telling, story};
+use crate::story::{Story, Telling, story};
 use crate::token::Token;
 
 /// What each pass made of a text.
@@ -31,12 +33,17 @@ pub struct Passes<'a> {
 
 impl<'a> Passes<'a> {
     pub(crate) fn by(text: &str, lexicon: &'a Lexicon) -> Self {
+        Self::of(text, Cast::default(), lexicon)
+    }
+
+    /// The same of a text about people who are known.
+    pub(crate) fn of(text: &str, known: Cast, lexicon: &'a Lexicon) -> Self {
         let tokens = crate::lex::lex(text, &lexicon.words);
         let scene = normalize(tokens.clone(), lexicon);
         let chunks = chunks(&scene.tokens, lexicon);
         let clauses = clauses(&chunks, lexicon);
         let statements = statements(&clauses, lexicon);
-        let told = told(&statements);
+        let told = told(&statements, known);
         let telling = story(&told);
         Self { lexicon, text: text.to_owned(), tokens, scene, chunks, clauses, statements, told, telling }
     }
@@ -83,7 +90,14 @@ impl<'a> Passes<'a> {
             Some(start..own.iter().map(|token| token.at.end).max()?)
         };
         let lines = self.telling.lines.into_iter().filter_map(|(line, tokens)| Some((line, bytes(tokens)?))).collect();
-        Read { story: self.telling.story, pieces, lines }
+        let none = |chunk: &Chunk| {
+            chunk.noun().is_some_and(|noun| {
+                let none = noun.pick == Pick::None || noun.count == Some(0);
+                none && matches!(noun.head, Head::Role(_) | Head::Bare)
+            })
+        };
+        let nobody = self.telling.story.people.is_empty() && self.chunks.iter().any(none);
+        Read { story: Story { nobody, ..self.telling.story }, pieces, lines }
     }
 }
 
@@ -182,6 +196,9 @@ impl fmt::Display for Shown<'_> {
             Says::Then(reason, _) => write!(f, "then {:?}", reason.cue),
             Says::From(who, class) => write!(f, "from {class}: {}", spaced(who)),
             Says::RobotFirst(_) => f.write_str("robot is first"),
+            Says::Twice(who, _) => write!(f, "meets it twice {}", spaced(who)),
+            Says::Queue(who) => write!(f, "queue {}", spaced(who)),
+            Says::After(..) => f.write_str("comes after those before"),
             Says::Happens(class, rank) => write!(f, "happens {class} ({rank})"),
             Says::There => f.write_str("happens there"),
             Says::GoalThere => f.write_str("robot goes there"),

@@ -7,6 +7,8 @@ use crate::token::{Bent, Kind, Sort, Token};
 
 /// How many a group is of whom no number is said.
 const FEW: u32 = 3;
+/// As many people as no scenario may have.
+const MANY: u32 = 41;
 /// Words that may stand between an article and its noun.
 const MODIFIERS: usize = 5;
 
@@ -131,7 +133,11 @@ impl Reader<'_> {
     }
 
     pub(crate) fn count(&self) -> Option<u32> {
-        self.peek().and_then(|token| self.number_of(token))
+        let token = self.peek()?;
+        // `10000 people`: more than there can be, and said so.
+        let people = self.tokens.get(self.at + 1).is_some_and(|next| next.is(Sort::People) || next.is(Sort::Role));
+        let many = token.number().filter(|number| people && number.fract().abs() < f64::EPSILON && *number > 0.0);
+        self.number_of(token).or_else(|| many.map(|_| MANY))
     }
 
     pub(crate) fn number_of(&self, token: &Token) -> Option<u32> {
@@ -173,6 +179,12 @@ impl Reader<'_> {
         words.iter().any(|word| word.is(Sort::Looks) && word.spelled.ends_with("er"))
     }
 
+    /// How many `some people` are.
+    fn few(&self, noun: &Noun) -> Option<u32> {
+        let some = self.tokens.get(noun.tokens.start).is_some_and(|first| first.lemma == "some");
+        (some && noun.several && noun.pick == Pick::Some).then_some(FEW)
+    }
+
     /// The role, with the words before it.
     fn head(&mut self, noun: &mut Noun, told: bool) -> bool {
         let start = self.at;
@@ -201,6 +213,7 @@ impl Reader<'_> {
                 noun.head = Head::Role(token.lemma.clone());
                 noun.several =
                     token.bent == Bent::S || token.lemma == "people" || noun.count.is_some_and(|count| count > 1);
+                noun.count = noun.count.or_else(|| self.few(noun));
                 noun.pace_mps = pace;
                 noun.modifiers = self
                     .tokens

@@ -44,12 +44,19 @@ impl Parser<'_> {
         let before = self.at.checked_sub(1).and_then(|at| self.chunks.get(at));
         // `4 s once it is near` is no `4 s after`.
         let next = self.ahead(1).filter(|next| next.word(Sort::Later) || next.lemma == "after");
-        let after = before.is_some_and(|before| before.word(Sort::After)) || next.is_some();
+        // `10 s A halts`: when, where it stands before whoever does it and no word says for how long.
+        let alone = clause.is_bare() && !clause.own && !before.is_some_and(|before| before.is == Is::Word);
+        let fronts = alone && self.ahead(1).and_then(Chunk::noun).is_some_and(Noun::may_be_person);
+        // `after a few seconds`
+        let article = before.is_some_and(|before| before.word(Sort::Indefinite));
+        let first = if article { self.at.checked_sub(2).and_then(|at| self.chunks.get(at)) } else { before };
+        let after = first.is_some_and(|first| first.word(Sort::After)) || next.is_some() || fronts;
         let measure = self.measure(amount, self.at);
         match amount {
             Amount::Distance(_) => clause.within_m = Some(measure),
             Amount::Time(_) if after => clause.after_s = Some(measure),
             Amount::Time(_) => clause.lasts_s = Some(measure),
+            Amount::Speed(_) => clause.pace_mps = Some(measure),
         }
         self.at += 1;
         if after && self.peek().is_some_and(|next| next.word(Sort::Later) || next.word(Sort::After)) {
@@ -59,7 +66,7 @@ impl Parser<'_> {
 
     fn measure(&self, amount: Amount, at: usize) -> Measure {
         let tokens = self.chunks.get(at).map_or(0..0, |chunk| chunk.tokens.clone());
-        let (Amount::Distance(value) | Amount::Time(value)) = amount;
+        let (Amount::Distance(value) | Amount::Time(value) | Amount::Speed(value)) = amount;
         Measure { value, from: tokens.start, to: tokens.end }
     }
 
@@ -201,6 +208,7 @@ impl Parser<'_> {
             match amount {
                 Amount::Distance(_) => clause.within_m = measure,
                 Amount::Time(_) => clause.lasts_s = measure,
+                Amount::Speed(_) => clause.pace_mps = measure,
             }
         }
         clause.places.extend(found.place.map(|(class, at)| self.place_at(class, at)));

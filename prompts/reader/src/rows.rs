@@ -1,5 +1,7 @@
 //! The rows of `data/`: what a phrase means, as data with examples of its own. Every example is a test (`tests/rows.rs`).
 
+use std::collections::BTreeSet;
+
 use serde::Deserialize;
 use socrates_model::statement::Background;
 use socrates_model::{Gesture, PlaceClass, Relation, Side};
@@ -33,7 +35,7 @@ pub enum Act {
 }
 
 impl Act {
-    /// Its name in a form.
+    /// Its name in the lines of a story: that of the action of a form as which it is played.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -47,6 +49,18 @@ impl Act {
             Self::Navigate => "navigate",
             Self::TurnBack => "turn_back",
             Self::Sign => "say",
+        }
+    }
+
+    /// The sign by which somebody is asked for it.
+    #[must_use]
+    pub const fn asked_by(self) -> Option<Gesture> {
+        match self {
+            Self::GiveWay | Self::RunAway => Some(Gesture::ExcuseMe),
+            Self::StandStill | Self::Block => Some(Gesture::Wait),
+            Self::Follow | Self::Approach => Some(Gesture::FollowMe),
+            Self::Navigate => Some(Gesture::Proceed),
+            Self::Look | Self::Startle | Self::TurnBack | Self::Sign => None,
         }
     }
 }
@@ -107,6 +121,10 @@ pub(crate) struct Frame {
     pub(crate) denied: Option<Act>,
     /// Whether those of whom it is said are a group.
     pub(crate) group: bool,
+    /// Whether they stand in it one behind the other.
+    pub(crate) queue: bool,
+    /// Whether they meet the robot a second time by it.
+    pub(crate) twice: bool,
     /// What it is as a reason, said of a person.
     pub(crate) cue: Option<Cue>,
     /// What it is as a reason, said of the robot.
@@ -236,4 +254,154 @@ pub(crate) struct Scope {
     /// Texts read otherwise than `gives`.
     #[serde(default)]
     pub(crate) not: Vec<String>,
+}
+
+/// What an edit asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Edit {
+    /// A longer path.
+    Longer,
+    /// A shorter path.
+    Shorter,
+    /// The path the other way round.
+    Reverse,
+    /// A path that does not lead past a place.
+    Avoid,
+    /// A path from somewhere.
+    Start,
+    /// A path to somewhere.
+    End,
+    /// Another place of the meeting.
+    Move,
+    /// Somebody leaves the scenario.
+    Remove,
+    /// Somebody walks slower.
+    Slower,
+    /// Somebody walks faster.
+    Faster,
+    /// Nobody gestures.
+    NoGestures,
+    /// A group is no group any more.
+    Ungroup,
+    /// Some of those who are there form a group.
+    Group,
+    /// Two people change places.
+    Swap,
+    /// A gesture more, or another one instead.
+    Gesture,
+    /// Somebody new, or what somebody does.
+    Story,
+}
+
+impl Edit {
+    /// Its name in `edits.toml`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Longer => "longer",
+            Self::Shorter => "shorter",
+            Self::Reverse => "reverse",
+            Self::Avoid => "avoid",
+            Self::Start => "start",
+            Self::End => "end",
+            Self::Move => "move",
+            Self::Remove => "remove",
+            Self::Slower => "slower",
+            Self::Faster => "faster",
+            Self::NoGestures => "no_gestures",
+            Self::Ungroup => "ungroup",
+            Self::Group => "group",
+            Self::Swap => "swap",
+            Self::Gesture => "gesture",
+            Self::Story => "story",
+        }
+    }
+}
+
+/// A row of `edits.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EditRow {
+    /// What it asks for.
+    pub(crate) edit: Edit,
+    /// Words of which each line has one in the edit.
+    pub(crate) has: Vec<String>,
+    /// Words of which it has none.
+    #[serde(default)]
+    pub(crate) lacks: String,
+    /// Whether the first of them begins it.
+    #[serde(default)]
+    pub(crate) first: bool,
+    /// Whether it names a place.
+    #[serde(default)]
+    pub(crate) place: bool,
+    /// Whether nobody does anything in it.
+    #[serde(default)]
+    pub(crate) still: bool,
+    /// Whether it names nobody new.
+    #[serde(default)]
+    pub(crate) known: bool,
+    /// Edits that ask for it.
+    pub(crate) reads: Vec<String>,
+    /// Edits that do not.
+    pub(crate) not: Vec<String>,
+}
+
+/// The file as written.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Edits {
+    pub(crate) asks: String,
+    pub(crate) adds: String,
+    pub(crate) everybody: String,
+    pub(crate) other: String,
+    #[serde(rename = "row")]
+    pub(crate) rows: Vec<EditRow>,
+}
+
+/// Some words.
+#[derive(Debug, Default, Deserialize)]
+#[serde(from = "String")]
+pub(crate) struct Set(BTreeSet<String>);
+
+impl From<String> for Set {
+    fn from(words: String) -> Self {
+        Self(words.split_whitespace().map(str::to_owned).collect())
+    }
+}
+
+impl Set {
+    pub(crate) fn contains(&self, word: &str) -> bool {
+        self.0.contains(word)
+    }
+}
+
+/// The words of `errands.toml`, which says what each list is for.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Errands {
+    pub(crate) from: Set,
+    pub(crate) to: Set,
+    pub(crate) within: Set,
+    pub(crate) past: Set,
+    pub(crate) along: Set,
+    pub(crate) ends: Set,
+    pub(crate) joins: Set,
+    pub(crate) nameless: Set,
+    pub(crate) rides: Set,
+    pub(crate) part: Set,
+    pub(crate) any: Set,
+    pub(crate) denies: Set,
+    pub(crate) before_denial: Set,
+    pub(crate) returns: Set,
+    pub(crate) comes: Set,
+    pub(crate) back: Set,
+    pub(crate) returns_to: Set,
+    pub(crate) fetches: Set,
+    pub(crate) does: Set,
+    pub(crate) outside: Set,
+    pub(crate) front: Set,
+    pub(crate) at_door: Set,
+    pub(crate) door: Set,
 }

@@ -39,6 +39,10 @@ pub enum Says<W> {
     Relate(W, Option<Relation>, Option<Side>),
     /// They are a group.
     Group(W),
+    /// They stand one behind the other.
+    Queue(W),
+    /// They meet the robot a second time, where that is said.
+    Twice(W, Option<PlaceClass>),
     /// How fast somebody walks, m/s.
     Pace(W, f64),
     /// Somebody does something, or does not.
@@ -47,6 +51,8 @@ pub enum Says<W> {
     RobotSays(Option<Gesture>, Option<W>),
     /// Out of which room or car somebody comes.
     From(W, PlaceClass),
+    /// Those before whom somebody comes, mostly those who were told last to come, and who comes after them.
+    After(Option<W>, W),
     /// The robot is there before somebody, mostly those of whom is spoken.
     RobotFirst(Option<W>),
     /// Something happens to which people may react from then on; whether it is a condition, for which somebody has to wait.

@@ -59,8 +59,16 @@ pub struct Person {
     pub pace_mps: Option<f64>,
     /// Number of their group, from 1.
     pub group: Option<usize>,
+    /// Whether they stand in it one behind the other.
+    pub queues: bool,
+    /// Whether they meet the robot twice; the second time there, where that is said.
+    pub twice: Option<Option<PlaceClass>>,
     /// What they do, in the order of the text.
     pub steps: Vec<Step>,
+    /// What the text says that they do not do.
+    pub denied: Vec<Act>,
+    /// Whether it says that they walk, and not how.
+    pub walks: bool,
 }
 
 /// Everything that a text states.
@@ -68,6 +76,8 @@ pub struct Person {
 pub struct Story {
     /// Everybody, in the order in which they are named.
     pub people: Vec<Person>,
+    /// Whether the text says that nobody is there, and names nobody.
+    pub nobody: bool,
     /// Where people meet the robot.
     pub place: Option<PlaceClass>,
     /// Where the robot's way begins.
@@ -78,6 +88,8 @@ pub struct Story {
     pub robot_via: Vec<PlaceClass>,
     /// Those before whom the robot is there.
     pub robot_first: People,
+    /// Those of whom the first comes before the second.
+    pub order: Vec<(usize, usize)>,
     /// Signs that the robot makes.
     pub robot_says: Vec<Gesture>,
 }
@@ -128,8 +140,12 @@ pub(crate) fn story(told: &Told) -> Telling {
     telling
         .lost
         .extend(lost.into_iter().filter(|(_, tokens)| !others(tokens)).map(|(number, _)| number).collect::<Vec<_>>());
+    // Whoever makes the very sign that they wait for was not made out.
+    let echoes: Vec<Range<usize>> =
+        telling.lines.iter().filter(|(line, _)| telling.story.echoes(line)).map(|(_, at)| at.clone()).collect();
+    telling.unplaced.extend(echoes);
     let unplaced = telling.story.unplaced();
-    for person in unplaced {
+    for person in unplaced.into_iter().filter(|person| *person >= told.known) {
         let line = telling.lines.iter().find(|(line, _)| line.person() == Some(person));
         telling.unplaced.extend(line.map(|(_, tokens)| tokens.clone()));
     }
@@ -172,6 +188,11 @@ impl Teller {
                 story.each(who, |person| person.group = Some(group));
                 lines.extend(who.iter().map(|person| Line::Group(*person)));
             }
+            Says::Twice(who, place) => {
+                story.each(who, |person| person.twice = Some(*place));
+                lines.extend(who.iter().map(|person| Line::Twice(*person)));
+            }
+            Says::Queue(who) => story.each(who, |person| person.queues = true),
             Says::Pace(who, mps) => {
                 story.each(who, |person| person.pace_mps = Some(*mps));
                 lines.extend(who.iter().map(|person| Line::Pace(*person)));
@@ -198,6 +219,13 @@ impl Teller {
                 lines.extend(new.iter().map(|person| Line::RobotFirst(*person)));
                 story.robot_first.extend(new);
             }
+            Says::After(first, then) => {
+                let pairs = first.iter().flatten().flat_map(|first| then.iter().map(move |then| (*first, *then)));
+                for (first, then) in pairs.filter(|pair| !story.order.contains(pair)).collect::<Vec<_>>() {
+                    story.order.push((first, then));
+                    lines.push(Line::Before(first, then));
+                }
+            }
             Says::There => self.there = true,
             Says::GoalThere => self.goal_there = true,
             Says::RobotVia(class) => {
@@ -216,9 +244,11 @@ impl Teller {
             Says::Walks(who) if who.iter().any(|person| steps.get(*person).is_some_and(|steps| *steps > 0)) => {
                 self.unsaid.insert(number);
             }
-            Says::Introduce(who) | Says::Noted(who) | Says::Walks(who) => {
-                lines.extend(who.iter().map(|person| Line::Person(*person)))
+            Says::Walks(who) => {
+                story.each(who, |person| person.walks = true);
+                lines.extend(who.iter().map(|person| Line::Person(*person)));
             }
+            Says::Introduce(who) | Says::Noted(who) => lines.extend(who.iter().map(|person| Line::Person(*person))),
             Says::Group(_)
             | Says::RobotSays(None, _)
             | Says::Then(..)
@@ -260,6 +290,9 @@ fn unsure(told: &Told) -> Vec<usize> {
             Says::RobotSays(..)
             | Says::Then(..)
             | Says::RobotFirst(_)
+            | Says::After(..)
+            | Says::Queue(_)
+            | Says::Twice(..)
             | Says::From(..)
             | Says::Happens(..)
             | Says::RobotVia(_)
@@ -292,7 +325,7 @@ fn unsure(told: &Told) -> Vec<usize> {
             let vague = others && told.vague.contains(&person);
             let less = somebody && anybody(person) && !own.whole;
             let heading = others && told.plain.contains(&person) && !own.told;
-            (own.told || own.named) && !vague && !less && !heading
+            person < told.known || (own.told || own.named) && !vague && !less && !heading
         })
         .collect();
     let unsure: Vec<usize> = (0..sure.len()).filter(|person| sure.get(*person) == Some(&false)).collect();
@@ -309,6 +342,8 @@ impl Story {
                 own == Some(*relation)
                     || own.is_some() && *relation == Relation::Static
                     || crosses && *relation == Relation::Crossing
+                    // Of those who come out one who stays was inside with them.
+                    || own == Some(Relation::Staying) && *relation == Relation::Leaving
             }
             Line::RobotStart(class) => self.robot_start == Some(*class),
             Line::RobotGoal(class) => self.robot_goal == Some(*class),
@@ -316,15 +351,31 @@ impl Story {
             | Line::Side(_)
             | Line::Pace(_)
             | Line::Group(_)
+            | Line::Twice(_)
             | Line::Step(..)
             | Line::Place(_)
             | Line::RobotVia(_)
             | Line::RobotFirst(_)
+            | Line::Before(..)
             | Line::RobotSays(_) => true,
         }
     }
 
+    /// Whether it is a step by which somebody makes a sign as soon as it is made.
+    fn echoes(&self, line: &Line) -> bool {
+        let Line::Step(person, number) = line else { return false };
+        let step = self.people.get(*person).and_then(|person| person.steps.get(*number));
+        let same = |step: &Step, sign: Gesture| {
+            sign != Gesture::Acknowledged
+                && step.when.iter().any(|reason| reason.cue == Cue::Says && reason.sign == Some(sign))
+        };
+        step.is_some_and(|step| step.says.is_some_and(|sign| same(step, sign)))
+    }
+
     fn relate(&mut self, who: &[usize], relation: Option<Relation>, side: Option<Side>) {
+        // `Three get out; one of them stays inside.`
+        let leaves = |person: &Person| person.relation == Some(Relation::Leaving);
+        let rest_leaves = self.people.iter().enumerate().any(|(other, person)| leaves(person) && !who.contains(&other));
         self.each(who, |person| {
             person.side = side.or(person.side);
             let Some(relation) = relation else { return };
@@ -336,7 +387,8 @@ impl Story {
             if both.contains(&person.relation) && both.contains(&Some(relation)) && person.relation != Some(relation) {
                 (person.relation, person.crosses) = (Some(Relation::Leaving), true);
             }
-            if stands || person.relation == Some(Relation::Staying) && relation == Relation::Leaving {
+            let stays = leaves(person) && relation == Relation::Staying && rest_leaves;
+            if stands || stays || person.relation == Some(Relation::Staying) && relation == Relation::Leaving {
                 person.relation = Some(relation);
             }
         });
@@ -395,6 +447,7 @@ impl Story {
     /// others who have a role. Mostly something that tells of them was not made out.
     fn unplaced(&self) -> People {
         let placed = |person: &Person| {
+            // Whoever follows is behind by that; whoever comes up or runs away may come from anywhere.
             let comes = |step: &Step| matches!(step.act, Act::Follow | Act::Approach | Act::RunAway);
             let group = |other: &&Person| person.group.is_some() && other.group == person.group;
             person.relation.is_some()
@@ -421,6 +474,8 @@ impl Story {
             !out.contains(&(number - 1))
         });
         self.robot_first = self.robot_first.iter().filter(|person| !out.contains(person)).copied().map(anew).collect();
+        self.order.retain(|(first, then)| !out.contains(first) && !out.contains(then));
+        self.order.iter_mut().for_each(|pair| *pair = (anew(pair.0), anew(pair.1)));
         for step in self.people.iter_mut().flat_map(|person| &mut person.steps) {
             step.whom = step.whom.map(anew);
             for reason in step.when.iter_mut().chain(&mut step.until) {
@@ -460,6 +515,7 @@ impl Story {
             self.robot_sign(*gesture);
         }
         if deed.not {
+            self.each(&deed.who, |person| person.denied.push(deed.act));
             return by_robot;
         }
         let whom = deed.whom.as_ref().and_then(|whom| whom.first().copied());
@@ -478,6 +534,7 @@ impl Story {
                 && step.when.is_empty()
                 && person.relation.is_none()
                 && person.steps.is_empty()
+                && !person.walks
             {
                 person.relation = Some(Relation::Static);
             }

@@ -11,6 +11,9 @@ use crate::parser::names_somebody;
 use crate::rows::{Act, Cue, Frame, Part};
 use crate::statement::{Deed, Named, Reason, Says};
 
+/// Why an amount of what the robot does is not played.
+const UP_TO_PLANNER: &str = "how far and how long the robot does something is up to its planner";
+
 /// When something begins and ends, and the tokens that say so.
 #[derive(Default)]
 pub(crate) struct Times {
@@ -99,7 +102,7 @@ impl Maker<'_> {
                 // `while it drives from the ward to the exit`
                 let drives = condition.tie == Tie::While && condition.clause.places.iter().any(|at| at.from);
                 self.places(&condition.clause, robot && (drives || condition.clause.acts.iter().any(part)));
-                self.rest(&condition.clause);
+                self.rest(&condition.clause, false);
             }
             let (reason, tokens) = found.map_or((None, Vec::new()), |(reason, tokens)| (Some(reason), tokens));
             // Whoever is waited for makes the sign.
@@ -138,7 +141,7 @@ impl Maker<'_> {
         let clause = &condition.clause;
         let none = Reason { who: None, cue: Cue::Near, sign: None, amount: clause.within_m.map(|m| m.value) };
         let robot = clause.subject.iter().any(|noun| self.is_robot(noun, clause));
-        let own = clause.subject.is_empty() || clause.subject == subject;
+        let own = clause.subject.is_empty() || clause.subject == subject || !clause.own;
         let mut tokens: Vec<Range<usize>> =
             clause.subject.iter().chain(&clause.agent).map(|noun| noun.tokens.clone()).collect();
         tokens.extend(clause.within_m.map(|m| m.from..m.to));
@@ -242,7 +245,7 @@ impl Maker<'_> {
         }
         let amounts_of_robot = [clause.lasts_s, clause.after_s, clause.within_m].into_iter().flatten();
         for amount in amounts_of_robot.filter(|_| robot && !done && !then) {
-            self.say(amount.from..amount.to, Says::Background(Background::Errand));
+            self.say(amount.from..amount.to, Says::NotPlayed(UP_TO_PLANNER.to_owned()));
         }
         if done || then || met {
             for tokens in used {

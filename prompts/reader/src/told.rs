@@ -29,6 +29,9 @@ impl fmt::Display for Story {
         for person in &self.robot_first {
             writeln!(f, "robot: before {}", name(*person))?;
         }
+        for (first, then) in &self.order {
+            writeln!(f, "{}: after {}", name(*then), name(*first))?;
+        }
         for (number, person) in self.people.iter().enumerate() {
             let name = name(number);
             writeln!(f, "{name}: {}", person.role)?;
@@ -41,6 +44,12 @@ impl fmt::Display for Story {
             }
             if let Some(group) = person.group {
                 writeln!(f, "{name}: group {group}")?;
+            }
+            if person.twice.is_some() {
+                writeln!(f, "{name}: meets it twice")?;
+            }
+            if person.queues {
+                writeln!(f, "{name}: queue")?;
             }
             if let Some(mps) = person.pace_mps {
                 writeln!(f, "{name}: pace {mps}")?;

@@ -22,6 +22,8 @@ struct File {
     labels: String,
     slow: String,
     brisk: String,
+    hurried: String,
+    paces: BTreeMap<String, f64>,
     numbers: BTreeMap<String, u32>,
     ordinals: BTreeMap<String, u32>,
     meters: BTreeMap<String, f64>,
@@ -42,6 +44,9 @@ pub(crate) struct Words {
     pub(crate) classes: BTreeMap<String, BTreeSet<String>>,
     forms: BTreeMap<String, String>,
     person_endings: Vec<String>,
+    pub(crate) hurried: BTreeSet<String>,
+    /// How fast people of a role walk, m/s.
+    pub(crate) paces: BTreeMap<String, f64>,
 }
 
 /// Endings, and what stands in their place in the base form.
@@ -63,12 +68,14 @@ impl Words {
     pub(crate) fn read(text: &str) -> Result<Self, toml::de::Error> {
         let file: File = toml::from_str(text)?;
         let mut words = Self {
+            paces: file.paces,
             numbers: file.numbers,
             ordinals: file.ordinals,
             meters: file.meters,
             seconds: file.seconds,
             forms: file.forms,
             person_endings: split(&file.person_endings).collect(),
+            hurried: split(&file.hurried).collect(),
             classes: file.classes.into_iter().map(|(name, all)| (name, split(&all).collect())).collect(),
             ..Self::default()
         };

@@ -10,18 +10,18 @@ use socrates_prompts::Question;
 use super::{Examples, injected, keep, office, proposed};
 
 /// Requests that can be read and not be met.
-const UNMET: &[&str] = &[
-    "A nurse comes towards the robot. Then she sings a song.",
-    "A worker follows the robot. He runs away from it.",
-    "Ein Mann geht auf den Roboter zu und bleibt dann stehen.",
-    "60 people come towards the robot.",
-    "A visitor stands on the escalator.",
+const UNMET: &[(&str, &str)] = &[
+    ("Drive to the planetarium", "A nurse comes towards the robot."),
+    ("Drive to the exit", "A worker follows the robot. He runs away from it."),
+    ("Drive to the exit", "Ein Mann geht auf den Roboter zu und bleibt dann stehen."),
+    ("Drive to the exit", "60 people come towards the robot."),
+    ("Drive to the exit", "Two people come out of the elevator."),
 ];
 
 pub(super) async fn examples() -> Examples {
     let mut all = injected(Stage::Proposal, |kind: FaultKind| kind.code().family() == Family::Proposal).await;
-    for rough in UNMET {
-        let (request, location) = office("Drive to the exit", rough);
+    for (task, rough) in UNMET {
+        let (request, location) = office(task, rough);
         keep(&mut all, socrates_offline::read(&request, &location).problems);
     }
     let (request, location) = office("Drive to the exit", "A visitor comes towards the robot.");

@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(asked.reading.facts, bound, "what a person wished stays");
         let shown = asked.messages().into_iter().find(|message| message.role == socrates_prompts::Role::Assistant);
         let shown: Value = serde_json::from_str(&shown.unwrap().text).unwrap();
-        assert_eq!(shown["reading"]["s1"], json!(["setting"]), "{shown}");
+        assert_eq!(shown["reading"]["s1"], json!(["looks"]), "{shown}");
         assert_eq!(shown["reading"].as_object().unwrap().len(), 4);
         let same = attempt(&Says(shown.to_string()), &first).await.unwrap();
         assert_eq!(same.written.remark(), made.written.remark(), "what is shown can be answered again");

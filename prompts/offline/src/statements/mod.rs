@@ -1,21 +1,17 @@
 //! The account of a request's texts: what became of every clause, and of every word in it that says something.
 //!
 //! ```text
-//! text ─► words, clauses, sentences (text)
-//!      ─► clauses and words hidden in turn, the text read again (influence): which lines of the reading (lines) need them
-//!      ─► a fate per word: read · not played · background with a reason (background, words) · not read
-//!      ─► statements, in the order of the text; for what was not read another wording, found by trying it (rewording)
+//! rough scenario ─► what the reader says of every piece (rough)
+//! task, context  ─► words and clauses (text), those that their readers took something of (words)
+//!                ─► clauses hidden in turn, the text read again (influence): which lines of the reading (lines) need them
+//!                ─► a fate per word: read · not played · background · not read
 //! ```
-//!
-//! Nothing here knows the rules of the grammar: a word is read where the reading would be another one without it.
 
-mod background;
 mod influence;
-mod lines;
-mod rewording;
+mod plain;
+mod rough;
 mod text;
 mod words;
-mod written;
 
 use std::ops::Range;
 
@@ -24,30 +20,14 @@ use socrates_model::fault::Span;
 use socrates_model::form::Form;
 use socrates_model::request::Expect;
 use socrates_model::statement::{Background, Became, Statement, TextKey, covers};
-use socrates_model::{Fault, Location, ReadBy, Reading, Request};
+use socrates_model::{Fault, Location, Reading, Request};
+use socrates_reader::Reader;
 
+use crate::lines::Line;
 use crate::understand::{Understood, understood};
-use background::Around;
 use influence::Influence;
-pub(crate) use lines::{Line, lines};
 use text::Token;
 use words::Kind;
-pub(crate) use written::form;
-
-/// Something that was understood, and is not played as it was said.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Unplayed {
-    /// Words of the text.
-    pub(crate) quote: String,
-    /// Why, and what is played instead.
-    pub(crate) why: String,
-}
-
-impl Unplayed {
-    pub(crate) fn of(quote: &str, why: &str) -> Self {
-        Self { quote: quote.to_owned(), why: why.to_owned() }
-    }
-}
 
 /// What became of a word.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,20 +45,17 @@ pub(crate) fn statements(request: &Request, location: &Location, read: &Understo
     // What `[expect]` and a form say wins over the text: only without them a text shows what was read of it.
     let without_expect = Request { expect: Expect::default(), ..request.clone() };
     let text_alone = Request { form: Form::default(), ..without_expect.clone() };
-    let by = read.reading.by;
-    let again = |other: &Request| (other != request).then(|| understood(other, location, true, by));
+    let again = |other: &Request| (other != request).then(|| understood(other, location, true));
     let (alone, beside) = (again(&text_alone), again(&without_expect));
     let (alone, beside) = (alone.as_ref().unwrap_or(read), beside.as_ref().unwrap_or(read));
     let mut found = Vec::new();
     for key in TextKey::ALL {
         let text = key.text_of(request);
-        if key == TextKey::RoughScenario && by == ReadBy::Small {
-            found.extend(crate::small::statements(request, alone, &read.reading));
-        } else if !text.trim().is_empty() {
+        if key == TextKey::RoughScenario {
             // A form takes the place of the rough scenario; the task and the context say the same beside it.
-            let (request, whole) =
-                if key == TextKey::RoughScenario { (&text_alone, alone) } else { (&without_expect, beside) };
-            found.extend(Account::new(request, location, (whole, &read.reading), key).statements());
+            found.extend(rough::statements(request, alone, &read.reading));
+        } else if !text.trim().is_empty() {
+            found.extend(Account::new(&without_expect, location, (beside, &read.reading), key).statements());
         }
     }
     // What a form states takes the place of what was read of the text; what was not read, or is not played, is still missing.
@@ -113,16 +90,13 @@ impl<'a> Account<'a> {
     ) -> Self {
         let text = key.text_of(request);
         let tokens = text::tokens(text);
-        let kinds = words::kinds(&tokens, location);
-        let read = |text: &str| read_again(request, location, (key, reading.by), text);
-        let used = tokens.iter().map(|token| key == TextKey::RoughScenario && touched(token, &whole.used)).collect();
+        let read = |text: &str| read_again(request, location, key, text);
+        let used = if key == TextKey::Task { whole.task.used.clone() } else { Reader::shipped().scene(text).used };
+        let kinds = words::kinds(&tokens, &whole.task.open, key);
+        let used = tokens.iter().map(|token| touched(token, &used)).collect();
         let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
-        let influence = again.influence();
+        let influence = again.by_clause(key == TextKey::Task);
         Self { request, location, whole, reading, key, text, tokens, kinds, influence }
-    }
-
-    fn reads(&self, text: &str) -> Vec<Line> {
-        read_again(self.request, self.location, (self.key, self.reading.by), text)
     }
 
     fn statements(&self) -> Vec<Statement> {
@@ -140,11 +114,10 @@ impl<'a> Account<'a> {
 
     /// What became of each word.
     fn fates(&self) -> Vec<Fate> {
-        let around = Around { tokens: &self.tokens, kinds: &self.kinds, read: &self.influence.read };
-        (0..self.tokens.len()).map(|place| self.fate(place, &around)).collect()
+        (0..self.tokens.len()).map(|place| self.fate(place)).collect()
     }
 
-    fn fate(&self, place: usize, around: &Around<'_>) -> Fate {
+    fn fate(&self, place: usize) -> Fate {
         if let Some((problem, instructs)) = self.problem(place) {
             return if instructs {
                 Fate::Background(Background::Instruction)
@@ -155,22 +128,11 @@ impl<'a> Account<'a> {
         if self.kinds.get(place).is_none_or(|kind| *kind == Kind::Connective) {
             return Fate::Joins;
         }
-        if self.influence.is_read(place) {
-            return Fate::Read;
-        }
         match self.key {
-            TextKey::SocialContext => return Fate::Background(Background::Setting),
-            TextKey::Task if !self.binds(place) => return Fate::Background(Background::Errand),
-            TextKey::Task => return Fate::NotRead,
-            TextKey::RoughScenario => {}
-        }
-        match around.reason(place) {
-            Some(Background::Comment) => Fate::Background(Background::Comment),
-            reason => match (self.unplayed(place), reason) {
-                (Some(unplayed), _) => Fate::NotPlayed(unplayed.why.as_str().into()),
-                (None, Some(reason)) => Fate::Background(reason),
-                (None, None) => Fate::NotRead,
-            },
+            _ if self.influence.is_read(place) => Fate::Read,
+            TextKey::Task if self.binds(place) => Fate::NotRead,
+            TextKey::Task => Fate::Background(Background::Errand),
+            TextKey::SocialContext | TextKey::RoughScenario => Fate::Background(Background::Setting),
         }
     }
 
@@ -188,15 +150,10 @@ impl<'a> Account<'a> {
 
     /// The problem of the reading that quotes a word, and whether the word speaks to the program.
     fn problem(&self, place: usize) -> Option<(&Fault, bool)> {
-        let of_person = |fault: &Fault| fault.at.agent.is_some() && self.key == TextKey::RoughScenario;
-        let own = |fault: &&Fault| fault.at.is_key(self.key.name()) || of_person(fault);
+        let own = |fault: &&Fault| fault.at.is_key(self.key.name());
         let quotes = |fault: &&Fault| fault.quotes.iter().any(|quote| self.quoted(quote, place));
         let problem = self.whole.reading.problems.iter().filter(own).find(quotes)?;
         Some((problem, self.whole.instructions.iter().any(|sentence| problem.quotes.contains(sentence))))
-    }
-
-    fn unplayed(&self, place: usize) -> Option<&Unplayed> {
-        self.whole.unplayed.iter().find(|unplayed| self.quoted(&unplayed.quote, place))
     }
 
     /// Whether a word stands in a quote of the text.
@@ -222,8 +179,9 @@ impl<'a> Account<'a> {
                     run.push(*place);
                 }
                 Some(_) | None => {
-                    let mut run =
-                        if runs.is_empty() && own != Fate::Read { std::mem::take(&mut joins) } else { Vec::new() };
+                    // Of a task the name alone is not played: what joins it to the robot's way is its errand.
+                    let leads = matches!(own, Fate::Background(_));
+                    let mut run = if runs.is_empty() && leads { std::mem::take(&mut joins) } else { Vec::new() };
                     joins.clear();
                     run.push(*place);
                     runs.push((own, run));
@@ -235,7 +193,7 @@ impl<'a> Account<'a> {
                 Fate::Joins | Fate::Read => continue,
                 Fate::Background(reason) => Became::Background(reason),
                 Fate::NotPlayed(why) => Became::NotPlayed { why },
-                Fate::NotRead => Became::NotRead { rewording: rewording::of(self, &run, places) },
+                Fate::NotRead => Became::NotRead { rewording: None },
             };
             found.extend(self.statement(&run, became));
         }
@@ -275,40 +233,12 @@ fn touched(token: &Token, used: &[Range<usize>]) -> bool {
 }
 
 /// The lines of the request with another text in place of one of its own.
-fn read_again(request: &Request, location: &Location, (key, by): (TextKey, ReadBy), text: &str) -> Vec<Line> {
+fn read_again(request: &Request, location: &Location, key: TextKey, text: &str) -> Vec<Line> {
     let mut other = request.clone();
     match key {
         TextKey::RoughScenario => other.rough_scenario = Some(text.to_owned()),
         TextKey::Task => text.clone_into(&mut other.task),
         TextKey::SocialContext => text.clone_into(&mut other.social_context),
     }
-    understood(&other, location, false, by).lines
-}
-
-/// The words of the reading's texts that were not understood, each once, as they stand there.
-pub(crate) fn unread(reading: &Reading) -> Vec<&str> {
-    let mut words: Vec<&str> = Vec::new();
-    for statement in reading.statements.iter().filter(|statement| statement.is_unread()) {
-        if !words.contains(&statement.quote.as_str()) {
-            words.push(&statement.quote);
-        }
-    }
-    words
-}
-
-/// Words of the rough scenario of which nothing was made, in lower case and without those that only join others.
-#[cfg(test)]
-pub(crate) fn loose(reading: &Reading) -> Vec<String> {
-    let made = |statement: &&socrates_model::Statement| {
-        !matches!(statement.became, socrates_model::statement::Became::Read { .. })
-            && statement.at == socrates_model::statement::TextKey::RoughScenario
-    };
-    let words = reading
-        .statements
-        .iter()
-        .filter(made)
-        .flat_map(|statement| statement.quote.split(|c: char| !c.is_alphanumeric()));
-    let words =
-        words.map(str::to_lowercase).filter(|word| !word.is_empty() && !crate::lexicon::lexicon().stop.contains(word));
-    words.collect()
+    understood(&other, location, false).lines
 }

@@ -79,13 +79,6 @@ fn words(text: &str) -> Vec<Range<usize>> {
     found
 }
 
-/// The text with another word in place of one.
-pub(super) fn exchanged(text: &str, token: &Token, word: &str) -> String {
-    let (before, after) =
-        (text.get(..token.at.start).unwrap_or_default(), text.get(token.at.end..).unwrap_or_default());
-    format!("{before}{word}{after}")
-}
-
 /// The text with some of its words exchanged for one that nobody knows.
 pub(super) fn masked(text: &str, tokens: &[Token], hidden: &dyn Fn(usize) -> bool) -> String {
     let mut out = String::with_capacity(text.len());

@@ -184,7 +184,7 @@ fn what_somebody_does_changes_in_place() {
         edited("office", "A nurse comes towards the robot in the corridor.", "let her stop 3 m before the robot");
     let human = &after.draft.proposal.humans[0];
     assert_eq!((human.rules.len(), &human.rules[0].act), (1, &Action::StandStill));
-    assert_eq!(human.rules[0].when, [Trigger::RobotVisible(3.0)]);
+    assert_eq!(human.rules[0].when, [Trigger::RobotNear(3.0)]);
     assert_eq!(after.draft.paths, before.paths);
     // The distance of a rule that is there changes, and nothing else of it.
     let (before, after) = edited("office", TWO, "the nurse should stop 3 m before the robot");
@@ -213,6 +213,28 @@ fn deeds_durations_and_refusals_are_edited() {
     let (_, after) = edited("office", TWO, "both look at the robot");
     let looks = |human: &socrates_model::HumanProposal| human.rules.iter().any(|rule| rule.act == Action::LookAtRobot);
     assert!(after.draft.proposal.humans.iter().all(looks));
+}
+
+#[test]
+fn what_the_documents_and_other_rooms_show_is_done() {
+    for (words, who) in [
+        ("human_1 should wave at the robot", 0),
+        ("human_1 should wave at the robot for 3 s when it is within 2 m", 0),
+        ("human_1 walks at 0.8 m/s", 0),
+        ("human_1 walks slower", 0),
+        ("human_1 gives way when the robot is within 2 m", 0),
+        ("slow down the visitor", 1),
+    ] {
+        let (before, after) = edited("office", TWO, words);
+        let humans = before.proposal.humans.iter().zip(&after.draft.proposal.humans);
+        let changed: Vec<usize> = humans.enumerate().filter(|(_, (old, new))| old != new).map(|(at, _)| at).collect();
+        assert_eq!(changed, [who], "{words}");
+    }
+    let (_, after) = edited("office", TWO, "add a third person who follows human_2, then remove the first");
+    assert_eq!(after.draft.proposal.humans.len(), 2);
+    assert_eq!(after.draft.proposal.humans[1].rules[0].act, Action::FollowHuman(id(1)));
+    let (_, after) = edited("office", TWO, "let human_1 and human_2 swap places; slow down the second one");
+    assert_eq!(after.done.len(), 2, "{:?}", after.done);
 }
 
 #[test]

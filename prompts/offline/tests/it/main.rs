@@ -6,5 +6,5 @@ mod common;
 mod corpus;
 mod edits;
 mod faults;
-mod small;
+mod said;
 mod ways;
