@@ -126,7 +126,7 @@ def find(place=None, namespace=None):
 
 def _secured(endpoint, keys):
     """Settings for an endpoint with TLS: the folder of the role `driver`, as `socrates cluster keys` made it."""
-    if not endpoint.startswith("tls/"):
+    if not endpoint.startswith("quic/"):
         return ()
     keys = keys or os.environ.get("SOCRATES_BUS__KEYS")
     if not keys:
@@ -141,7 +141,7 @@ def _secured(endpoint, keys):
 
 
 def connect(endpoint, keys=None):
-    """A session with the run's router, which nobody else is looked for beside. An endpoint that begins with `tls/` needs `keys`, the
+    """A session with the run's router, which nobody else is looked for beside. An endpoint that begins with `quic/` needs `keys`, the
     folder of the role driver, or the variable SOCRATES_BUS__KEYS that names it."""
     config = zenoh.Config()
     for key, value in (

@@ -16,6 +16,7 @@
 //! *Never here:* pictures with labels (they are drawn next door), moving agents, a clock, a random
 //! number that no seed gave, a rule about scenarios.
 
+mod cheapest;
 mod check;
 mod doors_file;
 mod field;
@@ -41,6 +42,7 @@ pub mod random;
 pub mod shipped;
 pub mod written;
 
+pub use cheapest::cheapest_way;
 pub use check::{check, check_door, findings, is_area_name};
 pub use field::{DistanceField, free_disc, nearest_free};
 pub use finding::{About, Finding};

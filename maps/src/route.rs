@@ -1,13 +1,11 @@
 //! One way from here to there: short, smooth, and not along the wall.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use socrates_model::{Grid, Point};
 
+use crate::cheapest::cheapest_way;
 use crate::field::{DistanceField, nearest_cell};
 use crate::geodesic::SNAP_M;
-use crate::layer::{Layer, Raster};
+use crate::layer::Raster;
 
 /// Clearance beyond the radius from which on a way is not made dearer, m. About one person's width.
 const COMFORT_M: f64 = 0.5;
@@ -71,50 +69,13 @@ fn search(
     goal: (usize, usize),
     radius_m: f64,
 ) -> Option<Vec<(usize, usize)>> {
-    let mut cost = Layer::filled(raster.width, raster.height, f64::INFINITY);
-    let mut came: Layer<(u32, u32)> = Layer::filled(raster.width, raster.height, (u32::MAX, u32::MAX));
     let ahead = |cell: (usize, usize)| (raster.center(cell.0, cell.1) - raster.center(goal.0, goal.1)).norm();
-    let mut open = BinaryHeap::new();
-    cost.set(start.0, start.1, 0.0);
-    open.push(Reverse((ahead(start).to_bits(), 0.0_f64.to_bits(), start)));
-    while let Some(Reverse((_, bits, cell))) = open.pop() {
-        if cell == goal {
-            return Some(walked_back(&came, start, goal));
-        }
-        let Some(so_far) = cost.get(cell.0, cell.1).filter(|known| known.to_bits() == bits) else { continue };
-        let here = field.clearance_of_cell(cell.0, cell.1);
-        for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)] {
-            let next = match (cell.0.checked_add_signed(dx), cell.1.checked_add_signed(dy)) {
-                (Some(column), Some(row)) if column < raster.width && row < raster.height => (column, row),
-                (Some(_), Some(_)) | (None, _) | (_, None) => continue,
-            };
-            let there = field.clearance_of_cell(next.0, next.1);
-            if there < radius_m {
-                continue;
-            }
-            let length = if dx == 0 || dy == 0 { 1.0 } else { std::f64::consts::SQRT_2 } * raster.resolution_m;
-            let total = so_far + length * price(f64::midpoint(here, there), radius_m);
-            if cost.get(next.0, next.1).is_some_and(|known| total < known) {
-                cost.set(next.0, next.1, total);
-                let back = (u32::try_from(cell.0).unwrap_or(u32::MAX), u32::try_from(cell.1).unwrap_or(u32::MAX));
-                came.set(next.0, next.1, back);
-                open.push(Reverse(((total + ahead(next)).to_bits(), total.to_bits(), next)));
-            }
-        }
-    }
-    None
-}
-
-fn walked_back(came: &Layer<(u32, u32)>, start: (usize, usize), goal: (usize, usize)) -> Vec<(usize, usize)> {
-    let mut way = vec![goal];
-    let mut at = goal;
-    while at != start {
-        let Some((column, row)) = came.get(at.0, at.1).filter(|back| back.0 != u32::MAX) else { break };
-        at = (column as usize, row as usize);
-        way.push(at);
-    }
-    way.reverse();
-    way
+    let clearance_m = |cell: (usize, usize)| field.clearance_of_cell(cell.0, cell.1);
+    cheapest_way((raster.width, raster.height), (start, goal), ahead, |here, next, cells| {
+        let there = clearance_m(next);
+        let price = price(f64::midpoint(clearance_m(here), there), radius_m);
+        (there >= radius_m).then_some(cells * raster.resolution_m * price)
+    })
 }
 
 /// Cost of a straight line, or `None` where the disc does not fit on it.

@@ -4,9 +4,9 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Where};
 
+use crate::conforms::{Misfit, differences};
 use crate::question::Question;
 use crate::schema::{THINKING, derived};
-use crate::validate::differences_at;
 use crate::{terse, ways};
 
 /// Most differences named at once.
@@ -55,24 +55,17 @@ pub(crate) fn prepared(mut value: Value) -> Value {
 
 /// The typed value, or every difference from its schema.
 pub(crate) fn typed<T: DeserializeOwned + schemars::JsonSchema>(value: Value) -> Result<T, Vec<Fault>> {
-    schema_faults(&derived::<T>(), &value)?;
+    schema_faults_at("$", &derived::<T>(), &value)?;
     serde_json::from_value(value).map_err(|error| vec![Fault::new(FaultCode::ESchema, "answer", error.to_string())])
 }
 
-/// E-SCHEMA for every difference, at most five.
-pub(crate) fn schema_faults(schema: &Value, value: &Value) -> Result<(), Vec<Fault>> {
-    schema_faults_at("$", schema, value)
-}
-
-/// The same for a value that stands at this path of the answer.
+/// E-SCHEMA for every difference, at most five, of a value that stands at this path of the answer.
 pub(crate) fn schema_faults_at(path: &str, schema: &Value, value: &Value) -> Result<(), Vec<Fault>> {
-    let found = differences_at(path, schema, value);
+    let found = differences(path, schema, value);
     if found.is_empty() {
         return Ok(());
     }
-    let fault = |d: crate::validate::Difference| {
-        Fault::new(FaultCode::ESchema, Where::key(d.path), format!("expected {}, found {}", d.expected, d.found))
-    };
+    let fault = |misfit: Misfit| Fault::new(FaultCode::ESchema, Where::key(misfit.at), misfit.message);
     Err(found.into_iter().take(MOST).map(fault).collect())
 }
 

@@ -145,7 +145,7 @@ mod tests {
                     if stage == Stage::Proposal && crate::schema::keyed(&question).is_some() != keyed {
                         continue;
                     }
-                    let missing = crate::validate::differences(&crate::answer_schema(&question, &style), &answer);
+                    let missing = crate::conforms::differences("$", &crate::answer_schema(&question, &style), &answer);
                     let told: Vec<String> = missing.iter().map(|one| format!("{one:?}")).collect();
                     assert_eq!(told, Vec::<String>::new());
                     seen += 1;

@@ -148,7 +148,7 @@ fn an_answer_cannot_name_what_is_not_in_the_vocabulary() {
     for words in INJECTIONS {
         let answer =
             json!({"analysis": "", "robot": [words], "humans": {"human_1": ["c"], "human_2": ["c"]}, "encounters": []});
-        assert!(!crate::validate::differences(&schema, &answer).is_empty(), "{words}");
+        assert!(!crate::conforms::differences("$", &schema, &answer).is_empty(), "{words}");
         // Words that want to be a place, a relation, an action or a gesture are none.
         let mut proposal = serde_json::to_value(crate::testing::proposal()).unwrap();
         for place in ["/place", "/humans/0/relation", "/humans/0/rules/0/act", "/humans/0/id"] {

@@ -30,6 +30,7 @@ pub mod opinion;
 pub mod schema;
 
 mod behaviors;
+mod conforms;
 mod feedback;
 mod hints;
 mod order;
@@ -39,7 +40,6 @@ mod sentences;
 mod shown;
 mod terse;
 mod trees;
-mod validate;
 mod vocabulary;
 mod ways;
 
@@ -51,6 +51,7 @@ mod testing;
 pub use account::{Account, Claim, Share, parse_account};
 pub use answer::{parse_paths, parse_proposal};
 pub use behaviors::parse_behaviors;
+pub use conforms::{Misfit, misfits};
 pub use message::{Message, Picture, Role};
 pub use passing::Passing;
 pub use prompt::{Prompt, Template, too_long};

@@ -10,8 +10,8 @@ use socrates_author::offline::Offline;
 use socrates_model::{Location, Request};
 use socrates_prompts::Question;
 
-use crate::bench::{Decisions, facts, play, read_facts};
-use crate::{Masked, plain};
+use super::bench::{Decisions, facts, play, read_facts};
+use super::{Masked, plain};
 
 /// A wish that the program cannot meet, contradictions, places that no map has: requests that end in faults.
 const TROUBLED: &[&str] = &[
@@ -80,7 +80,7 @@ async fn found() -> Decisions {
     let mut right = Vec::new();
     // In the answers to the shipped requests alone not every kind of fault has a place.
     let cards = cards().into_iter().map(|(_, location, request)| (request, location));
-    for (request, location) in crate::examples::shipped().into_iter().chain(cards) {
+    for (request, location) in super::examples::shipped().into_iter().chain(cards) {
         let reading = socrates_offline::read(&request, &location);
         all.push(read_facts(&reading));
         right.extend(answers(&Offline, &Question::first(request, reading, location, 1)).await);

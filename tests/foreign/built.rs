@@ -8,8 +8,12 @@ use socrates_tests::skip;
 /// The program of this name and source around one crate of one version; it is built in the second ring, which takes some
 /// minutes the first time.
 pub(super) fn reader(name: &str, package: (&str, &str), source: &str) -> Result<PathBuf, String> {
-    let (package, version) = package;
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    skip::alone(&folder, || built(&folder, name, package, source))
+}
+
+fn built(folder: &Path, name: &str, package: (&str, &str), source: &str) -> Result<PathBuf, String> {
+    let (package, version) = package;
     let program = folder.join("target/debug").join(name);
     if program.is_file() {
         return Ok(program);
@@ -28,7 +32,7 @@ pub(super) fn reader(name: &str, package: (&str, &str), source: &str) -> Result<
     write(&folder.join("src/main.rs"), source)?;
     let built = Command::new("cargo")
         .args(["build", "--quiet", "--target-dir", "target"])
-        .current_dir(&folder)
+        .current_dir(folder)
         .stdin(Stdio::null())
         .output()
         .map_err(|why| format!("cargo: {why}"))?;

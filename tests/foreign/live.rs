@@ -45,6 +45,10 @@ fn node() -> Option<PathBuf> {
 
 fn npm() -> Result<PathBuf, String> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("live-npm");
+    skip::alone(&folder, || installed(&folder))
+}
+
+fn installed(folder: &Path) -> Result<PathBuf, String> {
     let modules = folder.join("node_modules");
     let is_there = || modules.join("@foxglove/ws-protocol-examples/package.json").is_file();
     let asked = Command::new("node").arg("--version").stdin(Stdio::null()).output();
@@ -57,10 +61,10 @@ fn npm() -> Result<PathBuf, String> {
     if !skip::second_ring() {
         return Err(format!("`{}` is not here; `./gate --foreign` installs it", NODE_PACKAGES.join(", ")));
     }
-    std::fs::create_dir_all(&folder).map_err(|why| why.to_string())?;
+    std::fs::create_dir_all(folder).map_err(|why| why.to_string())?;
     let out = Command::new("npm")
         .args(["install", "--ignore-scripts", "--no-audit", "--no-fund", "--prefix"])
-        .arg(&folder)
+        .arg(folder)
         .args(NODE_PACKAGES)
         .stdin(Stdio::null())
         .output()

@@ -27,6 +27,10 @@ fn aimock() -> Option<PathBuf> {
 
 fn install() -> Result<PathBuf, String> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("aimock");
+    skip::alone(&folder, || installed(&folder))
+}
+
+fn installed(folder: &Path) -> Result<PathBuf, String> {
     let program = folder.join("node_modules/@copilotkit/aimock/dist/cli.js");
     let node = Command::new("node").arg("--version").stdin(Stdio::null()).output();
     if !node.is_ok_and(|out| out.status.success()) {
@@ -38,10 +42,10 @@ fn install() -> Result<PathBuf, String> {
     if !skip::second_ring() {
         return Err(format!("`{AIMOCK}` is not here; `./gate --foreign` installs it"));
     }
-    std::fs::create_dir_all(&folder).map_err(|why| why.to_string())?;
+    std::fs::create_dir_all(folder).map_err(|why| why.to_string())?;
     let out = Command::new("npm")
         .args(["install", "--ignore-scripts", "--no-audit", "--no-fund", "--prefix"])
-        .arg(&folder)
+        .arg(folder)
         .arg(AIMOCK)
         .stdin(Stdio::null())
         .output()

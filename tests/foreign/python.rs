@@ -8,6 +8,10 @@ use socrates_tests::skip;
 /// The Python in `folder` that has these packages and can run `import`; in the second ring of the gate they are installed.
 pub(crate) fn python(folder: &str, packages: &[&str], import: &str) -> Result<PathBuf, String> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    skip::alone(&folder, || installed(&folder, packages, import))
+}
+
+fn installed(folder: &Path, packages: &[&str], import: &str) -> Result<PathBuf, String> {
     let python = folder.join("bin/python3");
     let has = || {
         let asked = Command::new(&python).args(["-c", import]).stderr(Stdio::null()).status();

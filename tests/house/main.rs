@@ -1,13 +1,18 @@
 //! The house rules, each as a test.
 #![cfg(test)]
 
+mod budgets;
 mod circles;
 mod documents;
+mod english;
 mod features;
 mod layout;
+mod lexer;
 mod modules;
+mod openness;
 mod purity;
 mod rings;
+mod rooms;
 mod sources;
 mod spelling;
 mod strings;

@@ -109,3 +109,28 @@ fn a_cluster_is_submitted_to_and_collected_from_with_what_a_run_would_make() {
     }
     assert!(poll(|| naming(at).is_empty().then_some(())).is_some(), "left running: {:#?}", naming(at));
 }
+
+#[test]
+fn a_submission_names_no_folder_of_recordings() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let tape = at.join("tape");
+    let authors = ["record:TAPE=offline", "replay:TAPE=offline", "cassette:TAPE"];
+    for (number, author) in authors.into_iter().enumerate() {
+        let author = author.replace("TAPE", &tape.display().to_string());
+        // It is refused before anybody is asked: there is no cluster here.
+        let submit = |name: &str, more: &[&str]| {
+            let args: Vec<&str> = ["cluster", "submit", "hall.toml", "--connect", "unixsock-stream/none"].to_vec();
+            socrates(at, name, &[args.as_slice(), more].concat())
+        };
+        std::fs::write(at.join("hall.toml"), WAREHOUSE).unwrap();
+        let by_option = submit(&format!("option-{number}"), &["--author", &author]);
+        std::fs::write(at.join("hall.toml"), format!("{WAREHOUSE}\n[run]\nauthor = {author:?}\n")).unwrap();
+        let by_request = submit(&format!("request-{number}"), &[]);
+        for refused in [by_option, by_request] {
+            assert!(refused.code == 2 && refused.err.contains(&author), "{}", refused.err);
+            assert!(refused.err.contains("open no folder") && refused.err.contains("hall"), "{}", refused.err);
+        }
+    }
+    assert!(!tape.exists());
+}

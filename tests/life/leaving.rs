@@ -13,9 +13,6 @@ use socrates_tests::program::{naming, poll, signal};
 use crate::life::asking::asked;
 use crate::{PROGRAM, WAREHOUSE};
 
-/// Departures of the long test.
-const VISITS: usize = 100;
-
 /// Every attempt at a look, out of the job store.
 fn looks(folder: &Path) -> Vec<Attempt> {
     let mut store = SqliteStore::open(&folder.join("bundle/.socrates/jobs.sqlite")).unwrap();
@@ -30,11 +27,22 @@ fn speed(folder: &Path) -> f64 {
 }
 
 #[test]
-#[expect(clippy::print_stderr, reason = "the times are printed, not judged")]
+fn departures_hand_the_look_back_and_keep_what_was_changed() {
+    leave(3);
+}
+
+#[test]
+#[ignore = "sweep: a hundred visits of the whole program"]
 fn a_hundred_departures_hand_the_look_back_and_keep_what_was_changed() {
+    leave(100);
+}
+
+/// Visits of the whole program: each looks and leaves, the first changes a speed before; then the scenario is accepted.
+#[expect(clippy::print_stderr, reason = "the times are printed, not judged")]
+fn leave(visits: usize) {
     let folder = tempfile::tempdir().unwrap();
     let mut times: Vec<Duration> = Vec::new();
-    for visit in 0..VISITS {
+    for visit in 0..visits {
         let typed = if visit == 0 { "slow down human_1\nquit\n" } else { "quit\n" };
         let begun = Instant::now();
         let (finished, _) = asked(folder.path(), "visit", typed, "true");
@@ -45,13 +53,13 @@ fn a_hundred_departures_hand_the_look_back_and_keep_what_was_changed() {
     }
     times.sort_unstable();
     eprintln!(
-        "{VISITS} visits, start to end of the program: median {:?}, slowest {:?}",
-        times[VISITS / 2],
-        times[VISITS - 1]
+        "{visits} visits, start to end of the program: median {:?}, slowest {:?}",
+        times[visits / 2],
+        times[visits - 1]
     );
     // The log of events says why: no visit waited for a lease, because each had handed the look back.
     let looks = looks(folder.path());
-    assert_eq!(looks.len(), VISITS);
+    assert_eq!(looks.len(), visits);
     let ends: Vec<_> = looks.iter().map(|look| look.end).filter(|end| *end != Some(AttemptEnd::Released)).collect();
     assert!(ends.is_empty(), "{ends:?}");
     let (finished, json) = asked(folder.path(), "last", "accept\naccept\n", "true");

@@ -180,8 +180,7 @@ fn judges_who_agree_to_all_or_answer_nothing_do_not_count() {
     assert_eq!((code, &chat["judged"]), (0, &json!(0)), "{err} {chat}");
     assert_eq!(chat["not_judged"][1]["why"], "no answer could be read", "{chat}");
     let table = text(at, "out/second_opinion.csv");
-    let facts = table.matches(",no_answer,0,1,").count();
-    assert!(facts > 4 && facts + 1 == table.lines().count() && !table.contains(",not_shown,"), "{table}");
+    assert!(table.matches(",no_answer,0,1,").count() == 8 && !table.contains(",not_shown,"), "{table}");
     // Three answers each, and all of them are paid for.
     let cost = socrates(at, "cost", &["--format", "json", "cost", "out"]).json();
     assert_eq!(cost["total"][0]["calls"], json!(6), "{cost}");

@@ -5,6 +5,7 @@
 //! golden/   recording hashes of everything that is shipped
 //! life/     requests in, bundles out, with real processes
 //! chaos/    faults during a batch: kill -9 of any process, freezes, a full disk, clocks that jump
+//! dev/      tools for developers, a room of its own
 //! foreign/  with programs of others: browsers, servers of models, players, readers
 //! ```
 //!

@@ -6,7 +6,7 @@
 
 use std::io::Write as _;
 use std::panic::Location;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The variable of the second ring: `1` where what can be installed must be there.
 const FOREIGN: &str = "SOCRATES_FOREIGN";
@@ -54,6 +54,19 @@ pub fn elsewhere<T>(found: Result<T, String>) -> Option<T> {
 pub fn shared(path: &str) -> Option<PathBuf> {
     let place = crate::root().join(SHARED).join(path);
     elsewhere(if place.exists() { Ok(place) } else { Err(format!("data of others is not here: {SHARED}/{path}")) })
+}
+
+/// Installs something into a folder, one test at a time: tests of other processes wait for the lock beside the folder.
+///
+/// # Errors
+/// What `install` says, or that the lock cannot be made.
+pub fn alone<T>(folder: &Path, install: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    let path = folder.with_extension("lock");
+    let lock = std::fs::File::create(&path).and_then(|file| file.lock().map(|()| file));
+    let held = lock.map_err(|why| format!("{} cannot be locked: {why}", path.display()))?;
+    let done = install();
+    drop(held);
+    done
 }
 
 /// A program in the search path.

@@ -6,8 +6,8 @@ use async_trait::async_trait;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::call::{KIND_REFUSED, Refusal};
-use crate::envelope::{Envelope, decode, encode};
+use crate::call::{KIND_OTHER_REIGN, KIND_REFUSED, Refusal};
+use crate::envelope::{Envelope, ReignId, decode, encode};
 use crate::error::LinkError;
 use crate::mailbox::Mailbox;
 
@@ -130,13 +130,26 @@ pub struct Ask {
     key: String,
     body: Vec<u8>,
     reply: Box<dyn Reply>,
+    reign: Option<ReignId>,
 }
 
 impl Ask {
     /// A query with the way back.
     #[must_use]
     pub fn new(key: String, body: Vec<u8>, reply: Box<dyn Reply>) -> Self {
-        Self { key, body, reply }
+        Self { key, body, reply, reign: None }
+    }
+
+    /// The same, to be answered in this reign.
+    #[must_use]
+    pub fn in_reign(self, reign: ReignId) -> Self {
+        Self { reign: Some(reign), ..self }
+    }
+
+    /// The reign in which it is answered.
+    #[must_use]
+    pub const fn reign(&self) -> Option<ReignId> {
+        self.reign
     }
 
     /// Key that was asked.
@@ -179,7 +192,7 @@ impl Ask {
         epoch: u64,
         body: &T,
     ) -> Result<(), LinkError> {
-        let bytes = encode(&Envelope::fresh(kind, sender, epoch, body))?;
+        let bytes = encode(&Envelope::fresh(kind, sender, epoch, body).in_reign(self.reign))?;
         self.reply(bytes).await
     }
 
@@ -190,6 +203,14 @@ impl Ask {
     pub async fn refuse(self, sender: &str, epoch: u64, why: &str) -> Result<(), LinkError> {
         let refusal = Refusal { why: why.chars().take(4000).collect() };
         self.answer(KIND_REFUSED, sender, epoch, &refusal).await
+    }
+
+    /// Says that the reign of the question is unknown here: the asker gets [`LinkError::OtherReign`].
+    ///
+    /// # Errors
+    /// As [`Ask::reply`].
+    pub async fn disown(self, sender: &str, epoch: u64) -> Result<(), LinkError> {
+        self.answer(KIND_OTHER_REIGN, sender, epoch, &()).await
     }
 }
 

@@ -7,11 +7,14 @@ use serde::{Deserialize, Serialize};
 use socrates_model::TraceContext;
 
 use crate::bus::Bus;
-use crate::envelope::{Envelope, decode, encode};
+use crate::envelope::{Envelope, ReignId, decode, encode};
 use crate::error::LinkError;
 
 /// Kind of a reply that says no.
 pub const KIND_REFUSED: &str = "refused";
+
+/// Kind of a reply to a worker of a reign that is none of the orchestrator's own past.
+pub const KIND_OTHER_REIGN: &str = "other_reign";
 
 /// Body of a reply that says no.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,22 +34,23 @@ pub async fn call<Req: Serialize + Sync, Rep: DeserializeOwned>(
     request: &Req,
     timeout: Duration,
 ) -> Result<Rep, LinkError> {
-    Ok(call_envelope(bus, key, kind, request, None, timeout).await?.body)
+    Ok(call_envelope(bus, key, kind, request, (None, None), timeout).await?.body)
 }
 
-/// As [`call`], as a part of a trace, with the whole envelope of the reply: its epoch tells a stale orchestrator.
+/// As [`call`], as a part of a trace and for the orchestrator of a reign, with the whole envelope of the reply: its reign tells a
+/// stale orchestrator.
 ///
 /// # Errors
-/// As [`call`].
+/// As [`call`]; [`LinkError::OtherReign`] when the orchestrator never knew the reign.
 pub async fn call_envelope<Req: Serialize + Sync, Rep: DeserializeOwned>(
     bus: &dyn Bus,
     key: &str,
     kind: &str,
     request: &Req,
-    trace: Option<TraceContext>,
+    (trace, reign): (Option<TraceContext>, Option<ReignId>),
     timeout: Duration,
 ) -> Result<Envelope<Rep>, LinkError> {
-    let body = encode(&Envelope::fresh(kind, bus.name(), 0, request).in_trace(trace))?;
+    let body = encode(&Envelope::fresh(kind, bus.name(), 0, request).in_trace(trace).in_reign(reign))?;
     let reply = bus.query(key, body, timeout).await?;
     decode(kind, &reply)
 }

@@ -20,6 +20,20 @@ pub const MIN_VERSION: u32 = 1;
 /// Deepest nesting that is read: far more than any message has, far less than a stack holds.
 const MAX_DEPTH: usize = 32;
 
+/// One start of an orchestrator on one job store: a random number. The store lists those of its starts, so that an orchestrator
+/// tells workers of its own past from workers that served another store, or a later state of a store that was restored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct ReignId(pub u64);
+
+impl ReignId {
+    /// A number that no other start has.
+    #[must_use]
+    pub fn fresh() -> Self {
+        Self(uuid::Uuid::new_v4().as_u64_pair().0)
+    }
+}
+
 /// A message with what is needed to tell where it comes from and whether it can be read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Envelope<T> {
@@ -39,6 +53,10 @@ pub struct Envelope<T> {
     /// Reign of the orchestrator that wrote it; 0 from anybody else.
     #[serde(default)]
     pub epoch: u64,
+    /// Reign of the orchestrator that wrote it, or the one that the worker who wrote it serves; none from clients, and from
+    /// programs that know no such field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reign: Option<ReignId>,
     /// Wall time of the writer, ms since 1970; shown, never decides.
     #[serde(default)]
     pub sent_ms: u64,
@@ -62,6 +80,12 @@ impl<T> Envelope<T> {
         Self { traceparent, ..self }
     }
 
+    /// The same as written in, or for, this reign.
+    #[must_use]
+    pub fn in_reign(self, reign: Option<ReignId>) -> Self {
+        Self { reign, ..self }
+    }
+
     /// An envelope of this version with a fresh id; its time is the id's own.
     #[must_use]
     pub fn fresh(kind: &str, sender: &str, epoch: u64, body: T) -> Self {
@@ -74,6 +98,7 @@ impl<T> Envelope<T> {
             msg_id: id.to_string(),
             sender: sender.to_owned(),
             epoch,
+            reign: None,
             sent_ms,
             traceparent: None,
             body,
@@ -117,6 +142,7 @@ pub(crate) fn fits(key: &str, bytes: Vec<u8>) -> Result<Vec<u8>, LinkError> {
 ///
 /// # Errors
 /// [`LinkError::Incompatible`] for another version, [`LinkError::Refused`] when the other side said no,
+/// [`LinkError::OtherReign`] when it is an orchestrator that never knew the reign of the question,
 /// [`LinkError::Decode`] for anything else that is not such a message.
 pub fn decode<T: DeserializeOwned>(kind: &str, bytes: &[u8]) -> Result<Envelope<T>, LinkError> {
     if bytes.len() > MESSAGE_BYTES {
@@ -129,6 +155,9 @@ pub fn decode<T: DeserializeOwned>(kind: &str, bytes: &[u8]) -> Result<Envelope<
     if head.kind == crate::call::KIND_REFUSED && kind != crate::call::KIND_REFUSED {
         let refusal: Envelope<crate::call::Refusal> = read(kind, bytes)?;
         return Err(LinkError::Refused { key: kind.to_owned(), why: refusal.body.why });
+    }
+    if head.kind == crate::call::KIND_OTHER_REIGN {
+        return Err(LinkError::OtherReign { key: kind.to_owned() });
     }
     if head.kind != kind {
         let why = format!("it is of kind `{}`", head.kind.chars().take(80).collect::<String>());
@@ -161,6 +190,7 @@ mod tests {
             msg_id: "m".into(),
             sender: "w".into(),
             epoch: 3,
+            reign: None,
             sent_ms: 1000,
             traceparent: None,
             body: Acquire {
@@ -227,6 +257,15 @@ mod tests {
         let strange = Strange { v: 3, kind: "n", traceparent: "of another kind", body: 7 };
         let read = decode::<u32>("n", &rmp_serde::to_vec_named(&strange).unwrap()).unwrap();
         assert_eq!((read.body, read.traceparent), (7, None));
+    }
+
+    #[test]
+    fn a_reign_travels_and_what_is_none_costs_no_message() {
+        let of_reign = sample().in_reign(Some(ReignId(u64::MAX)));
+        let bytes = encode(&of_reign).unwrap();
+        assert_eq!(decode::<Acquire>("acquire", &bytes).unwrap(), of_reign);
+        assert_eq!(hex(&encode(&sample().in_reign(None)).unwrap()), GOLDEN_V1.trim());
+        assert_ne!(ReignId::fresh(), ReignId::fresh());
     }
 
     #[test]

@@ -77,6 +77,12 @@ pub enum LinkError {
         /// The other side's words.
         why: String,
     },
+    /// The orchestrator that answers never knew the reign which the asker serves: its job store is another one, or an older copy.
+    #[error("`{key}` was refused: the job store of the orchestrator is another one, or an older copy of it")]
+    OtherReign {
+        /// Key that was asked.
+        key: String,
+    },
     /// The program was built without the bus between processes.
     #[error(
         "this program was built without the feature `{feature}`, so its processes cannot reach each other; build it with that feature"
@@ -117,9 +123,11 @@ impl LinkError {
     #[must_use]
     pub const fn class(&self) -> FailureClass {
         match self {
-            Self::NoReply { .. } | Self::Timeout { .. } | Self::Transport { .. } | Self::Closed => {
-                FailureClass::Transient
-            }
+            Self::NoReply { .. }
+            | Self::Timeout { .. }
+            | Self::Transport { .. }
+            | Self::OtherReign { .. }
+            | Self::Closed => FailureClass::Transient,
             Self::TooLarge { .. }
             | Self::BadKey { .. }
             | Self::Encode { .. }

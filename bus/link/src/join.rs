@@ -12,6 +12,24 @@ pub const SECURE: &str = "quic/";
 /// How an endpoint with TLS over TCP begins, which is refused: the transport's link for it reads and writes one stream from two threads
 /// (eclipse-zenoh/zenoh#2557, in 1.10), and processes crashed by it.
 const OVER_TCP: &str = "tls/";
+/// How the endpoints begin that are spoken.
+const SPOKEN: [&str; 3] = ["tcp/", SECURE, "unixsock-stream/"];
+
+/// Whether an endpoint is one at which a participant can listen, or to which it can connect: `tcp/HOST:PORT`, `quic/HOST:PORT` or
+/// `unixsock-stream/PATH`. The transport judges the rest behind the first `/`.
+///
+/// # Errors
+/// [`LinkError::Keys`] for any other, with what to write.
+pub fn check_endpoint(endpoint: &str) -> Result<(), LinkError> {
+    if SPOKEN.iter().any(|start| endpoint.strip_prefix(start).is_some_and(|rest| !rest.is_empty())) {
+        return Ok(());
+    }
+    let (what, hint) = match endpoint.strip_prefix(OVER_TCP) {
+        Some(rest) => ("TLS over TCP is not spoken", format!("write `{SECURE}{rest}`, with its UDP port open")),
+        None => ("no endpoint", "write `tcp/HOST:PORT`, `quic/HOST:PORT` or `unixsock-stream/PATH`".to_owned()),
+    };
+    Err(LinkError::Keys { what: format!("`{endpoint}`: {what}"), hint })
+}
 
 /// The part a participant plays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,14 +102,11 @@ impl ZenohConfig {
     /// Whether the keys are there that the endpoints need, and are of a role that may use them so.
     ///
     /// # Errors
-    /// [`LinkError::Keys`] when they are not.
+    /// [`LinkError::Keys`] when they are not; as [`check_endpoint`].
     pub fn check(&self) -> Result<(), LinkError> {
         let bad = |what: String, hint: &str| Err(LinkError::Keys { what, hint: hint.to_owned() });
         let of = |start: &str, endpoints: &'_ [String]| endpoints.iter().find(|one| one.starts_with(start)).cloned();
-        if let Some(endpoint) = of(OVER_TCP, &self.listen).or_else(|| of(OVER_TCP, &self.connect)) {
-            let what = format!("`{endpoint}`: TLS over TCP is not spoken");
-            return bad(what, &format!("write `{}`, with its UDP port open", endpoint.replacen(OVER_TCP, SECURE, 1)));
-        }
+        self.listen.iter().chain(&self.connect).try_for_each(|endpoint| check_endpoint(endpoint))?;
         let (listens, connects) = (of(SECURE, &self.listen), of(SECURE, &self.connect));
         let Some(keys) = &self.credentials else {
             return match listens.or(connects) {

@@ -18,14 +18,14 @@ mod error;
 pub mod keys;
 
 mod envelope;
-pub use envelope::{Envelope, GRANTS_VERSION, MIN_VERSION, VERSION, decode, encode, wall_ms};
+pub use envelope::{Envelope, GRANTS_VERSION, MIN_VERSION, ReignId, VERSION, decode, encode, wall_ms};
 
 mod bus;
 mod mailbox;
 pub use bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
 
 mod call;
-pub use call::{KIND_REFUSED, Refusal, call, call_envelope};
+pub use call::{KIND_OTHER_REIGN, KIND_REFUSED, Refusal, call, call_envelope};
 
 mod authority;
 #[cfg(feature = "zenoh")]
@@ -42,7 +42,7 @@ mod witness;
 mod zenoh_bus;
 pub use authority::{KeysWish, RoleKeys, host_of, keys_of};
 pub use credentials::{Credentials, RoleFile};
-pub use join::{Mode, SECURE, ZenohConfig, join};
+pub use join::{Mode, SECURE, ZenohConfig, check_endpoint, join};
 pub use memory::MemoryBus;
 #[cfg(feature = "zenoh")]
 pub use zenoh_bus::ZenohBus;

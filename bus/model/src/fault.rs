@@ -37,6 +37,30 @@ pub enum FailureClass {
     Permanent,
 }
 
+impl FailureClass {
+    /// From the heaviest to the lightest: what cannot get better, then a wrong answer, then an unreadable one, then passing trouble.
+    /// A job that breaks its worker outweighs a wrong configuration: with the configuration mended it would break the next worker.
+    const BY_WEIGHT: [Self; 7] = [
+        Self::Poison,
+        Self::Permanent,
+        Self::Semantic,
+        Self::Unparsable,
+        Self::Overload,
+        Self::WorkerDeath,
+        Self::Transient,
+    ];
+
+    /// The class of a failure with these faults: that of its heaviest hard fault.
+    ///
+    /// A failure without a hard fault is a wrong answer: it is asked again within the budget and the number of tries of its job. As
+    /// passing trouble it would be repeated outside of the budget, and would count against every job of its stage.
+    #[must_use]
+    pub fn of(faults: &[Fault]) -> Self {
+        let has = |class: &Self| faults.iter().any(|fault| !fault.is_soft() && fault.code.class() == *class);
+        Self::BY_WEIGHT.into_iter().find(has).unwrap_or(Self::Semantic)
+    }
+}
+
 /// What the orchestrator does about a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -150,6 +174,22 @@ pub fn hard(faults: &[Fault]) -> Vec<Fault> {
 mod tests {
     use super::*;
     use crate::{AgentId, HumanId};
+
+    #[test]
+    fn the_heaviest_hard_fault_gives_the_class() {
+        use FaultCode::{EJson, GDisc, JLost, JSpec, PContra, PLabel, PRead, T429, TNet};
+        let of = |codes: &[FaultCode]| {
+            FailureClass::of(&codes.iter().map(|code| Fault::new(*code, "x", "y")).collect::<Vec<_>>())
+        };
+        let by_weight = [JSpec, PContra, GDisc, EJson, T429, JLost, TNet];
+        for (place, code) in by_weight.iter().enumerate() {
+            let lighter: Vec<FaultCode> = by_weight[place..].iter().rev().copied().collect();
+            assert_eq!(of(&lighter), code.class(), "{lighter:?}");
+        }
+        assert_eq!(by_weight.map(FaultCode::class), FailureClass::BY_WEIGHT);
+        assert_eq!(of(&[PRead, TNet]), FailureClass::Transient, "a soft fault is only a warning");
+        assert_eq!((of(&[PLabel]), of(&[])), (FailureClass::Semantic, FailureClass::Semantic));
+    }
 
     #[test]
     fn a_fault_is_written_as_an_object_and_read_back() {

@@ -26,7 +26,7 @@
 //! | pause of a worker | digest of its instance, `pause`, count | when it asks or reports again |
 //! | intervals of a table | fixed in `Bootstrap` | which runs are drawn again |
 //! | cases of a tree's conditions | fixed | which truths are tried where there are too many |
-//! | `dev fuzz` | number of the input, and the door as its stream ([`stream_seed`]) | which bytes are damaged |
+//! | `socrates-dev fuzz` | number of the input, and the door as its stream ([`stream_seed`]) | which bytes are damaged |
 //!
 //! The names: a *seed revision* is the last revision in which this very stage was sent back, a *reseed* a rung of the
 //! ladder on which the author is asked with other luck, a *simulation seed* the seed of a run.

@@ -15,9 +15,9 @@ use std::time::Instant;
 use iceoryx2::prelude::{
     AllocationStrategy, Config, FileName, LogLevel, NodeBuilder, Path, SemanticString as _, ipc_threadsafe,
 };
-use socrates_model::RunId;
 use socrates_model::recording::{AgentState, Recording};
-use socrates_stream::{FrameSink as _, ShmConfig, ShmHost, ShmSink, ShmState, ShmWatch, csv};
+use socrates_model::{Onlooker as _, RunId};
+use socrates_stream::{ShmConfig, ShmHost, ShmSink, ShmState, ShmWatch, csv};
 
 /// Ticks of a case, in turns with those of the other.
 const TICKS: u64 = 2_000;
@@ -69,7 +69,7 @@ fn case(agents: u32) -> (f64, f64) {
     for tick in 0..TICKS {
         states.iter_mut().for_each(|state| state.tick = tick);
         let begun = Instant::now();
-        sink.tick(tick, &states);
+        sink.tick(&states, &[]);
         sum += watch.look(total).unwrap().unwrap();
         ours.push(begun.elapsed().as_secs_f64());
         let begun = Instant::now();

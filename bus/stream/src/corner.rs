@@ -1,6 +1,7 @@
 //! Where shared memory is arranged, also for a program that was built without it.
 
 use std::path::{Path as FsPath, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 /// Where shared memory is arranged: a corner of one user, which nobody else can enter. Writers and readers must agree.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,6 +22,24 @@ impl ShmConfig {
     }
 }
 
+/// The service of shared memory that has the ticks of a run, known from its announcement on.
+#[derive(Debug, Clone, Default)]
+pub struct SharedMemory(Arc<OnceLock<String>>);
+
+impl SharedMemory {
+    /// Its name; none where there is none, or not yet.
+    #[must_use]
+    pub fn name(&self) -> Option<String> {
+        self.0.get().cloned()
+    }
+
+    /// It is there under this name.
+    #[cfg_attr(not(feature = "shm"), expect(dead_code, reason = "without shared memory there is never one"))]
+    pub(crate) fn is_at(&self, name: &str) {
+        self.0.get_or_init(|| name.to_owned());
+    }
+}
+
 /// Shared memory in a program that was built without the feature `shm`: no run has any, which is logged.
 #[cfg(not(feature = "shm"))]
 #[derive(Debug, Clone)]
@@ -36,7 +55,10 @@ impl ShmHost {
 
     /// None, with a line in the log that names the missing feature.
     #[must_use]
-    pub fn sink(&self, run: &socrates_model::RunId) -> Option<(Box<dyn crate::FrameSink>, crate::SharedMemory)> {
+    pub fn sink(
+        &self,
+        run: &socrates_model::RunId,
+    ) -> Option<(Box<dyn socrates_model::Onlooker + Send>, crate::SharedMemory)> {
         let why = crate::StreamError::Shm {
             run: run.to_string(),
             what: "joining",

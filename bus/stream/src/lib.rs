@@ -1,10 +1,10 @@
 //! Agent states on their way: live to whoever watches, and as files.
 //!
 //! ```text
-//! simulation ── FrameSink ─┬─► ShmSink   shared memory, one host      ─► ShmWatch
+//! simulation ── Onlooker ──┬─► ShmSink   shared memory, one host      ─► ShmWatch
 //!   (blocking thread)      ├─► LiveSink  bus, between hosts           ─► Watch (ticks in order, exact gaps, fetch)
 //!                          ├─► mcap::Writer  a file or a tape in memory, chunk by chunk, as the run grows
-//!                          └─► Recorder  memory ─► mcap::write, csv::write_agents
+//!                          └─► Keeper    memory ─► mcap::write, csv::write_agents
 //! ```
 //!
 //! The same 64-byte records travel everywhere. A sink never holds the simulation up: what a viewer misses
@@ -23,16 +23,13 @@ mod bounds;
 mod error;
 pub use error::StreamError;
 
-mod sink;
-pub use sink::{Fanout, FrameSink, NoSink, Recorder, SharedMemory};
-
 mod order;
 pub use order::{Order, Seen, TickRange};
 
 mod corner;
-pub use corner::ShmConfig;
 #[cfg(not(feature = "shm"))]
 pub use corner::ShmHost;
+pub use corner::{SharedMemory, ShmConfig};
 
 #[cfg(feature = "shm")]
 mod shm;
@@ -57,6 +54,8 @@ pub use past::Past;
 pub use watch::{Sharpness, Sight, Watch};
 
 pub mod csv;
+#[cfg(feature = "mcap")]
+pub mod foxglove;
 #[cfg(feature = "mcap")]
 pub mod mcap;
 #[cfg(feature = "mcap")]

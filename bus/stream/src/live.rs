@@ -6,18 +6,18 @@ use std::time::Duration;
 
 use serde::Serialize;
 use socrates_link::{Ask, Bus, LinkError, Publish, Qos, Serving, keys};
-use socrates_model::RunId;
 use socrates_model::live::{LiveEnd, LiveScene};
 use socrates_model::recording::{AgentState, Event, RecordingHeader};
+use socrates_model::{Onlooker, RunId};
 use tokio::sync::Notify;
 use tokio::task::JoinHandle;
 use tokio::time::Instant;
 
+use crate::corner::SharedMemory;
 use crate::error::StreamError;
 use crate::mcap::Tape;
 use crate::part;
 use crate::shelf::{Ctl, Shelf};
-use crate::sink::{FrameSink, SharedMemory};
 
 /// Ticks that go out together, where they come that fast.
 const TOGETHER: u64 = 10;
@@ -120,23 +120,21 @@ impl Drop for LiveSink {
     }
 }
 
-impl FrameSink for LiveSink {
+impl Onlooker for LiveSink {
     fn announce(&mut self, header: &RecordingHeader) {
         self.shelf.announce(header);
         self.news.notify_one();
     }
 
-    fn tick(&mut self, tick: u64, states: &[AgentState]) {
+    fn tick(&mut self, states: &[AgentState], events: &[Event]) {
         self.shelf.tick(states);
+        let tick = states.first().map_or(0, |state| state.tick);
         // Waking somebody costs more than a tick; who waits for fewer, or comes later, is looked for now and then.
         if tick % TOGETHER == TOGETHER - 1 && self.shelf.is_heard() {
             self.news.notify_one();
         }
-    }
-
-    fn event(&mut self, event: &Event) {
-        self.shelf.event(event);
-        if self.shelf.is_heard() {
+        events.iter().for_each(|event| self.shelf.event(event));
+        if !events.is_empty() && self.shelf.is_heard() {
             self.news.notify_one();
         }
     }

@@ -17,8 +17,6 @@
 //! A file grows chunk by chunk and is good up to its last whole one at any moment. Times are those of the run and nothing
 //! else is written, so the same recording gives the same bytes.
 
-mod floor;
-mod proto;
 mod read;
 mod scene;
 mod tape;
@@ -27,10 +25,9 @@ mod write;
 use serde::{Deserialize, Serialize};
 use socrates_model::Digest;
 
-pub use floor::{FLOOR_CELLS, Floor, floor};
 pub use read::{Rest, begins, read, read_rest};
 pub use tape::Tape;
-pub use write::{Whole, Writer, write};
+pub use write::{Whole, Writer, record_schema, write};
 
 const HEADER: &str = "/socrates/header";
 const AGENTS: &str = "/socrates/agents";

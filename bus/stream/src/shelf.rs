@@ -10,9 +10,9 @@ use socrates_model::live::{LiveDoor, LiveDoors, LiveEnd, LiveEvents, LiveMeta, L
 use socrates_model::lockstep::{MAP_PART_CELLS, map_bytes};
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentInfo, AgentState, Event, EventKind, RecordingHeader};
 
+use crate::corner::SharedMemory;
 use crate::mcap::Tape;
 use crate::part;
-use crate::sink::SharedMemory;
 
 /// Largest reply with events or agents, bytes.
 const PART_BYTES: usize = 48 * 1024;

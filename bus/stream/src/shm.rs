@@ -11,14 +11,12 @@ use iceoryx2::prelude::{
     SignalHandlingMode, ZeroCopySend, ipc_threadsafe, set_log_level,
 };
 use iceoryx2::service::port_factory::PortFactory as _;
-use socrates_model::RunId;
-use socrates_model::live::LiveEnd;
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingHeader};
+use socrates_model::{Onlooker, RunId};
 
-use crate::corner::ShmConfig;
+use crate::corner::{SharedMemory, ShmConfig};
 use crate::error::StreamError;
 use crate::order::{Order, Seen, TickRange};
-use crate::sink::{FrameSink, SharedMemory};
 
 /// Folder where shared memory segments live on this system.
 const SHM_FOLDER: &str = "/dev/shm";
@@ -145,7 +143,7 @@ impl ShmHost {
 
     /// A sink for the ticks of a run, and where it puts them; none where shared memory cannot be had, which is logged.
     #[must_use]
-    pub fn sink(&self, run: &RunId) -> Option<(Box<dyn FrameSink>, SharedMemory)> {
+    pub fn sink(&self, run: &RunId) -> Option<(Box<dyn Onlooker + Send>, SharedMemory)> {
         match ShmSink::open(run, self) {
             Ok(sink) => {
                 let place = sink.place.clone();
@@ -274,7 +272,7 @@ impl ShmSink {
     }
 }
 
-impl FrameSink for ShmSink {
+impl Onlooker for ShmSink {
     fn announce(&mut self, header: &RecordingHeader) {
         match self.create(header.agents.len().max(1)) {
             Ok(port) => {
@@ -285,16 +283,12 @@ impl FrameSink for ShmSink {
         }
     }
 
-    fn tick(&mut self, _tick: u64, states: &[AgentState]) {
+    fn tick(&mut self, states: &[AgentState], _events: &[Event]) {
         if let Err(why) = self.send(states) {
             tracing::warn!(%why, "shared memory is given up for this run");
             self.port = None;
         }
     }
-
-    fn event(&mut self, _event: &Event) {}
-
-    fn end(&mut self, _end: &LiveEnd) {}
 }
 
 /// Whether so many bytes are free in shared memory: over-committing it shows as a signal, not as an error.
@@ -427,13 +421,13 @@ mod tests {
         assert!(modes.len() > 1, "{modes:?}: a folder and segments");
         assert!(modes.iter().all(|(_, mode)| mode & 0o077 == 0), "{modes:?}: others can look in");
         for tick in 0..10 {
-            sink.tick(tick as u64, recording.tick(tick));
+            sink.tick(recording.tick(tick), &[]);
         }
         // A late reader still gets the history.
         let mut watch = ShmWatch::open(&run, &reading).unwrap();
         let mut next = 0;
         for tick in 10..20 {
-            sink.tick(tick as u64, recording.tick(tick));
+            sink.tick(recording.tick(tick), &[]);
             while let Some(states) = watch.poll().unwrap() {
                 assert_eq!(states, recording.tick(next));
                 next += 1;
@@ -443,7 +437,7 @@ mod tests {
         assert!(watch.missing().is_empty());
         // A reader that sleeps loses the oldest and knows which.
         for tick in 20..200 {
-            sink.tick(tick as u64, recording.tick(tick));
+            sink.tick(recording.tick(tick), &[]);
         }
         let mut got = Vec::new();
         while let Some(states) = watch.poll().unwrap() {
@@ -492,7 +486,7 @@ mod tests {
         }
         let mut watch = ShmWatch::open(&run, &reading).unwrap();
         for tick in 0..30 {
-            sink.tick(tick, &states(tick));
+            sink.tick(&states(tick), &[]);
             assert!(watch.poll().unwrap().unwrap() == states(tick), "tick {tick}");
         }
         assert!(watch.missing().is_empty());

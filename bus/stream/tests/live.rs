@@ -10,9 +10,9 @@ use socrates_link::{Bus, MemoryBus, Overflow, Qos, keys};
 use socrates_model::driver::{MissionDoor, MissionMap, map_cells};
 use socrates_model::live::{self, LiveDoor, LiveDoors, LiveEnd, LiveEvents, LiveMeta, LivePlace, LiveScene};
 use socrates_model::recording::{AgentInfo, AgentState, Event, EventKind, Recording};
-use socrates_model::{AgentId, Cell, Grid, Pose, RunId, SimTime};
+use socrates_model::{AgentId, Cell, Grid, Onlooker as _, Pose, RunId, SimTime};
 use socrates_stream::mcap::Tape;
-use socrates_stream::{FrameSink as _, Linger, LiveSink, Sharpness, Sight, TickRange, Watch, csv};
+use socrates_stream::{Linger, LiveSink, Sharpness, Sight, TickRange, Watch, csv};
 
 const WATCHDOG: Duration = Duration::from_secs(60);
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -38,16 +38,18 @@ fn linger() -> Linger {
     Linger::new(Duration::from_secs(30), 4)
 }
 
+/// What happened at a tick.
+fn events_at(recording: &Recording, tick: usize) -> Vec<Event> {
+    recording.events.iter().filter(|event| event.time.tick() == tick as u64).cloned().collect()
+}
+
 /// Plays a run to its viewers; what is recorded of it on the tape comes first.
 fn play(sink: &mut LiveSink, tape: &Tape, recording: &Recording) {
     let mut writer = tape.record(&recording.header, None).unwrap();
     sink.announce(&recording.header);
     for tick in 0..recording.ticks() {
         writer.tick(recording.tick(tick)).unwrap();
-        for event in recording.events.iter().filter(|event| event.time.tick() == tick as u64) {
-            sink.event(event);
-        }
-        sink.tick(tick as u64, recording.tick(tick));
+        sink.tick(recording.tick(tick), &events_at(recording, tick));
     }
     writer.finish().unwrap();
     sink.end(&LiveEnd::default());
@@ -241,7 +243,7 @@ async fn a_run_given_up_in_its_midst_ends_for_its_watchers_and_leaves_the_bus() 
         let recording = recording(1);
         sink.announce(&recording.header);
         for tick in 0..7 {
-            sink.tick(tick as u64, recording.tick(tick));
+            sink.tick(recording.tick(tick), &[]);
         }
         drop(sink);
         let tally = watched(&mut watch).await;
@@ -330,7 +332,7 @@ async fn a_late_watcher_gets_every_tick_from_0_though_the_ring_has_passed_on() {
                     gone.recv().unwrap();
                 }
                 writer.tick(played.tick(tick)).unwrap();
-                sink.tick(tick as u64, played.tick(tick));
+                sink.tick(played.tick(tick), &[]);
             }
             writer.finish().unwrap();
             sink.end(&LiveEnd::default());
@@ -461,12 +463,7 @@ async fn a_run_tells_its_scene_map_and_doors_and_with_its_end_how_it_is_recorded
         sink.announce(&recording.header);
         for tick in 0..recording.ticks() {
             writer.tick(recording.tick(tick)).unwrap();
-            recording
-                .events
-                .iter()
-                .filter(|event| event.time.tick() == tick as u64)
-                .for_each(|event| sink.event(event));
-            sink.tick(tick as u64, recording.tick(tick));
+            sink.tick(recording.tick(tick), &events_at(&recording, tick));
         }
         writer.finish().unwrap();
         sink.end(&end);

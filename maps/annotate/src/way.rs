@@ -1,12 +1,9 @@
 //! Ways round what stands on the floor, and ways as few straight pieces.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use socrates_maps::Layer;
+use socrates_maps::cheapest_way;
 use socrates_model::geometry::nearest_on_segment;
 
-use crate::cells::{Cell, ROUND, step};
+use crate::cells::Cell;
 use crate::floor::{BODY_M, Floor, Spot};
 
 /// Clearance from which on a way is not made dearer, m.
@@ -82,46 +79,19 @@ pub(crate) fn way(floor: &Floor, from: &Spot, to: &Spot) -> Option<Vec<Spot>> {
     let (wide, tall) = (high.0.checked_sub(low.0)?, high.1.checked_sub(low.1)?);
     let own = |cell: Cell| (cell.0.wrapping_sub(low.0), cell.1.wrapping_sub(low.1));
     let spot = |cell: Cell| floor.spot((cell.0 + low.0, cell.1 + low.1));
-    let mut cost = Layer::filled(wide, tall, f64::INFINITY);
-    let mut came: Layer<Option<(u32, u32)>> = Layer::filled(wide, tall, None);
     let (start, goal) = (own(start), own(goal));
     let ahead = |cell: Cell| (spot(cell) - spot(goal)).norm();
-    let mut open = BinaryHeap::new();
-    cost.set(start.0, start.1, 0.0);
-    open.push(Reverse((ahead(start).to_bits(), 0.0_f64.to_bits(), start)));
-    while let Some(Reverse((_, bits, cell))) = open.pop() {
-        if cell == goal {
-            let mut path = vec![*to];
-            let mut here = cell;
-            while let Some((column, row)) = came.get(here.0, here.1).flatten() {
-                here = (column as usize, row as usize);
-                path.push(spot(here));
-            }
-            if let Some(last) = path.last_mut() {
-                *last = *from;
-            }
-            path.reverse();
-            return Some(path);
-        }
-        let Some(so_far) = cost.get(cell.0, cell.1).filter(|known| known.to_bits() == bits) else { continue };
-        for direction in ROUND {
-            let next = step(cell, direction);
-            if cost.get(next.0, next.1).is_none() {
-                continue;
-            }
-            let clear_m = floor.raw_m(&spot(next));
-            if clear_m < LEAST_M && next != goal {
-                continue;
-            }
-            let length = if direction.0 == 0 || direction.1 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
-            let price = 1.0 + ((COMFORT_M - clear_m) / (COMFORT_M - LEAST_M)).clamp(0.0, 1.0);
-            let total = so_far + length * floor.cell_m * price;
-            if cost.get(next.0, next.1).is_some_and(|known| total < known) {
-                cost.set(next.0, next.1, total);
-                came.set(next.0, next.1, Some((cell.0 as u32, cell.1 as u32)));
-                open.push(Reverse(((total + ahead(next)).to_bits(), total.to_bits(), next)));
-            }
-        }
+    let cells = cheapest_way((wide, tall), (start, goal), ahead, |_here, next, cells| {
+        let clear_m = floor.raw_m(&spot(next));
+        let price = 1.0 + ((COMFORT_M - clear_m) / (COMFORT_M - LEAST_M)).clamp(0.0, 1.0);
+        (clear_m >= LEAST_M || next == goal).then_some(cells * floor.cell_m * price)
+    })?;
+    let mut path: Vec<Spot> = cells.into_iter().map(spot).collect();
+    if let Some(last) = path.last_mut() {
+        *last = *to;
     }
-    None
+    if let Some(first) = path.first_mut() {
+        *first = *from;
+    }
+    Some(path)
 }

@@ -61,6 +61,12 @@ pub struct MetricRow {
     pub stable: Option<f64>,
     /// Share of the resamples in which a planner is best, by planner; empty without an order.
     pub best: Vec<f64>,
+    /// The planner that is marked as best, where one is.
+    pub marked: Option<usize>,
+    /// Decimals that tell its figure from the others'.
+    pub decimals: usize,
+    /// Planners that are not ordered, because they arrived too seldom; empty without an order.
+    pub unordered: Vec<usize>,
 }
 
 /// The figure of a planner.
@@ -204,6 +210,9 @@ mod tests {
             order: vec![(0, false), (1, true)],
             stable: Some(0.9),
             best: vec![0.5, 0.5],
+            marked: None,
+            decimals: 2,
+            unordered: Vec::new(),
         };
         let head = Head {
             basis: text,

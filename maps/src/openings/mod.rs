@@ -105,12 +105,6 @@ impl Enclosure {
         self.nodes.contains(node)
     }
 
-    /// The opening with a declared door of this id.
-    #[must_use]
-    pub fn by_door(&self, id: &str) -> Option<&Opening> {
-        self.openings.iter().find(|opening| opening.door() == Some(id))
-    }
-
     /// The openings by which the place is left, one for each way out: of doors that lie one behind the other, a landing door and
     /// the door of its car, the first.
     #[must_use]

@@ -5,10 +5,10 @@ use crate::plan::Plan;
 use crate::{DistanceField, Ground, Sight, check};
 use socrates_model::{Cell, GraphNode, Grid, PlaceClass, Point};
 
-/// Seeds of each kind; none was chosen for what it draws. `SOCRATES_WORLDS` sets another number.
-fn seeds() -> u64 {
-    std::env::var("SOCRATES_WORLDS").map_or(40, |count| count.parse().expect("SOCRATES_WORLDS is a number"))
-}
+/// Seeds of each kind in the gate; none was chosen for what it draws.
+const FEW: u64 = 4;
+/// Seeds of each kind in a sweep, and of plans, which are drawn quickly.
+const MANY: u64 = 40;
 
 /// Radius of the robot that has to get everywhere, m.
 const ROBOT_M: f64 = 0.3;
@@ -223,9 +223,9 @@ fn spread(values: &[f64]) -> String {
 
 /// All facts over all seeds of a kind, the ranges of its widths, and that no two of its worlds are the same.
 #[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
-fn every_world(kind: Kind) {
+fn every_world(kind: Kind, seeds: u64) {
     let mut measures = Measures::default();
-    for seed in 0..seeds() {
+    for seed in 0..seeds {
         holds(seed, kind, &mut measures);
     }
     let floats =
@@ -248,13 +248,13 @@ fn every_world(kind: Kind) {
 
 #[test]
 fn every_office_is_sound() {
-    every_world(Kind::Office);
+    every_world(Kind::Office, FEW);
 }
 
 #[test]
 fn every_hospital_is_sound_and_has_elevators() {
-    every_world(Kind::Hospital);
-    for seed in 0..seeds() {
+    every_world(Kind::Hospital, FEW);
+    for seed in 0..FEW {
         let (_, hospital) = made_of(seed, Kind::Hospital);
         let cars: Vec<_> = hospital.doors.iter().filter(|door| door.id.starts_with("elevator_")).collect();
         assert!(!cars.is_empty(), "hospital {seed}");
@@ -264,24 +264,32 @@ fn every_hospital_is_sound_and_has_elevators() {
 
 #[test]
 fn every_warehouse_is_sound() {
-    every_world(Kind::Warehouse);
+    every_world(Kind::Warehouse, FEW);
 }
 
 #[test]
 fn every_hall_is_sound() {
-    every_world(Kind::Hall);
+    every_world(Kind::Hall, FEW);
 }
 
 #[test]
 fn every_home_is_sound() {
-    every_world(Kind::Home);
+    every_world(Kind::Home, FEW);
+}
+
+#[test]
+#[ignore = "sweep: 40 worlds of every kind"]
+fn every_world_of_every_kind_is_sound() {
+    for kind in Kind::ALL {
+        every_world(kind, MANY);
+    }
 }
 
 #[test]
 fn the_same_seed_gives_the_same_files_and_no_two_seeds_the_same_plan() {
     let mut seen = BTreeSet::new();
     for kind in Kind::ALL {
-        for seed in 0..seeds() {
+        for seed in 0..MANY {
             let text = plan(seed, kind);
             assert_eq!(text, plan(seed, kind));
             // The first line holds the seed.
@@ -307,7 +315,7 @@ fn types_of_rooms_are_read_as_rooms_and_areas_and_needed_ones_are_there() {
         (Kind::Hall, rooms::HALL),
         (Kind::Home, rooms::HOME),
     ] {
-        let count = seeds();
+        let count = MANY;
         for template in templates {
             let class = PlaceClass::of_type(&template.kind);
             let wanted = if template.kind.ends_with("AREA") { PlaceClass::OpenArea } else { PlaceClass::Room };

@@ -8,7 +8,7 @@ use socrates_crowd::tracks::Tracks;
 use socrates_hunav::{AgentsFile, Dialect, HumanModel, Inputs, Problem, Profile, RobotSpec, Severity};
 use socrates_model::{Location, Point, Pose};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 use crate::prepare::{load_location, slug};
@@ -51,10 +51,10 @@ pub fn is_agents_file(what: &Path) -> bool {
 }
 
 /// Runs an agents file and writes what happened.
-pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complaint> {
+pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Diagnostic> {
     let (file, agents) = read(&options.what)?;
     let profile: Profile = match &options.profile {
-        Some(name) => name.parse().map_err(|why: socrates_hunav::BadProfile| Complaint::input(why.to_string(), ""))?,
+        Some(name) => name.parse().map_err(|why: socrates_hunav::BadProfile| Diagnostic::input(why.to_string(), ""))?,
         None => Profile::Native,
     };
     let location = options.map.as_deref().map(map).transpose()?;
@@ -110,10 +110,10 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
     if let Some(location) = &location {
         let title = format!("{name} · {} · {}", profile.name(), location.name);
         let bytes = files::bytes(&path, u64::MAX, "it was just written")?;
-        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| Complaint::input(why.to_string(), ""))?;
+        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| Diagnostic::input(why.to_string(), ""))?;
         let heading = socrates_draw::Heading { title: &title, asked: "" };
         let svg = socrates_draw::run_picture(location, &recording, None, None, heading);
-        let png = socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| Complaint::input(why.to_string(), ""))?;
+        let png = socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| Diagnostic::input(why.to_string(), ""))?;
         files::write(&dir.join("run.svg"), svg.as_bytes())?;
         look = dir.join("run.png");
         files::write(&look, &png)?;
@@ -130,7 +130,7 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
 }
 
 /// Checks an agents file and writes it in the form of another version, with a note for what is lost.
-pub fn convert(talk: &Printer, path: &Path, to: Option<&str>, out: Option<&Path>) -> Result<(), Complaint> {
+pub fn convert(talk: &Printer, path: &Path, to: Option<&str>, out: Option<&Path>) -> Result<(), Diagnostic> {
     let (file, agents) = read(path)?;
     for warning in &agents.warnings {
         talk.warn(&warning.to_string());
@@ -156,7 +156,7 @@ pub fn convert(talk: &Printer, path: &Path, to: Option<&str>, out: Option<&Path>
 }
 
 /// An agents file with its name in messages.
-pub(crate) fn read(path: &Path) -> Result<(String, AgentsFile), Complaint> {
+pub fn read(path: &Path) -> Result<(String, AgentsFile), Diagnostic> {
     let file = path.display().to_string();
     let text = files::text(path, MAX_BYTES, "name a HuNavSim agents file")?;
     let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
@@ -164,31 +164,31 @@ pub(crate) fn read(path: &Path) -> Result<(String, AgentsFile), Complaint> {
 }
 
 /// The problems of an agents file.
-pub(crate) fn listed(file: &str, problems: &[Problem]) -> Complaint {
-    let mut complaint = Complaint::input(
+pub fn listed(file: &str, problems: &[Problem]) -> Diagnostic {
+    let mut diagnostic = Diagnostic::input(
         format!("`{file}` has {}", plural(problems.len(), "problem")),
         "the README of `workers/simulation/hunav` describes agents files",
     );
-    complaint.causes = problems.iter().map(ToString::to_string).collect();
-    complaint
+    diagnostic.causes = problems.iter().map(ToString::to_string).collect();
+    diagnostic
 }
 
 /// Recorded people.
-fn tracks(path: &Path) -> Result<Tracks, Complaint> {
+fn tracks(path: &Path) -> Result<Tracks, Diagnostic> {
     let hint = "CSV with the columns t,id,x,y and, where known, yaw,vx,vy";
     let text = files::text(path, MAX_TRACKS_BYTES, hint)?;
     Tracks::read(&text).map_err(|why| {
-        let mut complaint = Complaint::input(format!("`{}` cannot be replayed", path.display()), hint);
-        complaint.causes = why.to_string().lines().map(|line| line.trim().to_owned()).collect();
-        complaint
+        let mut diagnostic = Diagnostic::input(format!("`{}` cannot be replayed", path.display()), hint);
+        diagnostic.causes = why.to_string().lines().map(|line| line.trim().to_owned()).collect();
+        diagnostic
     })
 }
 
 /// A map_server file, a location folder, or a shipped location.
-fn map(name: &str) -> Result<Location, Complaint> {
+fn map(name: &str) -> Result<Location, Diagnostic> {
     if name.ends_with(".yaml") || name.ends_with(".yml") {
         return socrates_maps::load_map(Path::new(name)).map_err(|faults| {
-            Complaint::faults(
+            Diagnostic::faults(
                 format!("the map `{name}` is not usable"),
                 &faults,
                 "`socrates explain CODE` says what to do",
@@ -199,9 +199,9 @@ fn map(name: &str) -> Result<Location, Complaint> {
 }
 
 /// `x,y,yaw` and more points to drive through.
-fn robot(text: &str) -> Result<RobotSpec, Complaint> {
+fn robot(text: &str) -> Result<RobotSpec, Diagnostic> {
     let wrong = || {
-        Complaint::input(
+        Diagnostic::input(
             format!("`--robot {text}` is no robot"),
             "write x,y,yaw and, where it drives, points: --robot \"0,0,0;5,0;5,3\" (m, rad)",
         )
@@ -223,10 +223,10 @@ fn robot(text: &str) -> Result<RobotSpec, Complaint> {
 }
 
 /// `2=orca`.
-fn model(text: &str) -> Result<(i64, HumanModel), Complaint> {
+fn model(text: &str) -> Result<(i64, HumanModel), Diagnostic> {
     let names: Vec<&str> = HumanModel::ALL.iter().map(|model| model.name()).collect();
     let wrong = || {
-        Complaint::input(
+        Diagnostic::input(
             format!("`--model {text}` is no model of an agent"),
             format!("write ID=MODEL; models: {}", names.join(", ")),
         )

@@ -8,7 +8,7 @@ use socrates_model::Verdict;
 use socrates_stream::csv::Table;
 
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::labels::shown;
 use crate::output::Printer;
@@ -29,7 +29,7 @@ struct Label {
 }
 
 /// Does `dev agreement`.
-pub fn agreement(talk: &Printer, labels: &Path, bundles: &[PathBuf]) -> Result<(), Complaint> {
+pub fn agreement(talk: &Printer, labels: &Path, bundles: &[PathBuf]) -> Result<(), Diagnostic> {
     let text = files::text(labels, MAX_BYTES, &format!("a CSV with the columns {}", COLUMNS.join(",")))?;
     let labels = read(&text, &labels.display().to_string())?;
     let mut verdicts: BTreeMap<String, Verdict> = BTreeMap::new();
@@ -50,7 +50,7 @@ pub fn agreement(talk: &Printer, labels: &Path, bundles: &[PathBuf]) -> Result<(
     }
     if let Some(run) = labels.iter().map(|label| &label.run).find(|run| double.contains(*run)) {
         let fits: Vec<&str> = verdicts.keys().filter(|name| name.ends_with(run.as_str())).map(String::as_str).collect();
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("several bundles hold a run `{run}`: {}", fits.join(", ")),
             "name only the bundles that were on the page, or write these names into the labels",
         ));
@@ -59,7 +59,7 @@ pub fn agreement(talk: &Printer, labels: &Path, bundles: &[PathBuf]) -> Result<(
         labels.iter().map(|label| label.run.as_str()).filter(|run| !verdicts.contains_key(*run)).collect();
     if unknown.len() == labels.iter().map(|label| &label.run).collect::<BTreeSet<_>>().len() {
         let known: Vec<&str> = verdicts.keys().map(String::as_str).take(8).collect();
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "no labeled run is in the bundles",
             format!("runs there: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") }),
         ));
@@ -95,9 +95,9 @@ pub fn agreement(talk: &Printer, labels: &Path, bundles: &[PathBuf]) -> Result<(
     Ok(())
 }
 
-fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
+fn read(text: &str, name: &str) -> Result<Vec<Label>, Diagnostic> {
     let bad = |line: usize, what: String| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{name}` line {line}: {what}"),
             format!("the columns are {}; answers are yes, no or unsure", COLUMNS.join(",")),
         )
@@ -257,8 +257,8 @@ mod tests {
             (format!("{head}a,,yes,no,no"), "`rater` is empty"),
             (head.to_owned(), "no label"),
         ] {
-            let complaint = read(&text, "l.csv").unwrap_err();
-            assert!(complaint.what.contains(wanted), "{}", complaint.what);
+            let diagnostic = read(&text, "l.csv").unwrap_err();
+            assert!(diagnostic.what.contains(wanted), "{}", diagnostic.what);
         }
     }
 }

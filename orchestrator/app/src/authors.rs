@@ -16,14 +16,14 @@ use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 
 /// Largest key file that is read, bytes.
 const MAX_KEY_BYTES: u64 = 16 * 1024;
 
 /// Keys and addresses of this process.
-pub(crate) fn keys(config: &Config) -> Result<Keys, Complaint> {
+pub(crate) fn keys(config: &Config) -> Result<Keys, Diagnostic> {
     let mut servers = BTreeMap::new();
     for dialect in Dialect::ALL {
         let part = part(dialect);
@@ -49,17 +49,17 @@ pub(crate) fn keys(config: &Config) -> Result<Keys, Complaint> {
 const LONGEST_S: u64 = 86_400;
 
 /// A time of the configuration in seconds. One that cannot be kept is refused, not replaced by another.
-fn seconds(config: &Config, key: &str) -> Result<u64, Complaint> {
+fn seconds(config: &Config, key: &str) -> Result<u64, Diagnostic> {
     let found = config.number(key);
     if (1..=LONGEST_S).contains(&found) {
         return Ok(found);
     }
     let what = format!("`{key}` is {found}; it takes whole seconds, 1 to {LONGEST_S}");
-    Err(Complaint::input(what, "`socrates config` prints the manual"))
+    Err(Diagnostic::input(what, "`socrates config` prints the manual"))
 }
 
 /// Longest attempts of authoring, simulation and scoring, ms.
-pub(crate) fn deadlines_ms(config: &Config) -> Result<(u64, u64, u64), Complaint> {
+pub(crate) fn deadlines_ms(config: &Config) -> Result<(u64, u64, u64), Diagnostic> {
     let ms = |key: &str| seconds(config, key).map(|seconds| seconds * 1_000);
     // Whichever of the two limits comes first ends a call.
     ms("author.timeout_s")?;
@@ -68,7 +68,7 @@ pub(crate) fn deadlines_ms(config: &Config) -> Result<(u64, u64, u64), Complaint
 }
 
 /// What follows from the times of the configuration, in sentences.
-pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Complaint> {
+pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Diagnostic> {
     let (author, simulation, scoring) = deadlines_ms(config)?;
     let again = config.number("orchestrator.asks_again").min(10);
     Ok(vec![
@@ -99,12 +99,12 @@ pub(crate) fn secrets(config: &Config) -> Vec<ApiKey> {
 }
 
 /// Whether a key for Chat Completions is there, which `auto` looks for.
-pub(crate) fn key_found(config: &Config) -> Result<bool, Complaint> {
+pub(crate) fn key_found(config: &Config) -> Result<bool, Diagnostic> {
     Ok(key(config, &part(Dialect::OpenAi))?.is_some())
 }
 
 /// The style of questions, as settings of jobs; empty for the default.
-pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complaint> {
+pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Diagnostic> {
     let words = ["mode", "paths", "behaviors", "image", "feedback"]
         .into_iter()
         .map(|name| (name, config.text(&format!("author.{name}"))))
@@ -114,11 +114,11 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
         let setting = BTreeMap::from([(format!("prompt.{name}"), word)]);
         Style::from_settings(&setting).map_err(|fault| {
             let what = format!("`author.{name}`: {}", fault.message);
-            Complaint::input(what, "`socrates config author` prints the manual")
+            Diagnostic::input(what, "`socrates config author` prints the manual")
         })?;
         asked.extend(setting);
     }
-    let broken = |fault: socrates_model::Fault| Complaint::input(fault.to_string(), String::new());
+    let broken = |fault: socrates_model::Fault| Diagnostic::input(fault.to_string(), String::new());
     Style::from_settings(&asked).map(|style| style.settings()).map_err(broken)
 }
 
@@ -130,20 +130,20 @@ pub(crate) fn behaviors_by(author: &AuthorSpec, style: &BTreeMap<String, String>
 }
 
 /// Whether the author reads the texts of requests itself; rules have the grammar.
-pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Complaint> {
+pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Diagnostic> {
     let word = config.text("author.reading");
     match word.as_str() {
         "model" => Ok(author.is_model()),
         "grammar" => Ok(false),
         _ => {
             let what = format!("`author.reading`: `{word}` is unknown; allowed: model, grammar");
-            Err(Complaint::input(what, "`socrates config author` prints the manual"))
+            Err(Diagnostic::input(what, "`socrates config author` prints the manual"))
         }
     }
 }
 
 /// The writer of paths, as a setting of jobs; empty where the author writes them.
-pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Complaint> {
+pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Diagnostic> {
     let word = config.text("author.paths_by");
     match word.as_str() {
         "model" => Ok(BTreeMap::new()),
@@ -153,19 +153,19 @@ pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<
         "solver" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
         _ => {
             let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, model_alone, solver");
-            Err(Complaint::input(what, "`socrates config author` prints the manual"))
+            Err(Diagnostic::input(what, "`socrates config author` prints the manual"))
         }
     }
 }
 
 /// That an author gave nothing, and why: its server's fault or the input's.
-pub(crate) fn unasked(what: String, why: &AskError, hint: &str) -> Complaint {
+pub(crate) fn unasked(what: String, why: &AskError, hint: &str) -> Diagnostic {
     let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
-    Complaint::faults(what, &[why.fault()], hint).with_code(code)
+    Diagnostic::faults(what, &[why.fault()], hint).with_code(code)
 }
 
 /// Looks whether these authors can be asked, before anything is made.
-pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &AuthorSpec>) -> Result<(), Complaint> {
+pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &AuthorSpec>) -> Result<(), Diagnostic> {
     let authors: BTreeSet<String> = authors.into_iter().map(AuthorSpec::to_string).collect();
     let keys = keys(config)?;
     for author in authors {
@@ -179,9 +179,9 @@ pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &Au
 }
 
 /// `dev probe`: what a server enforces.
-pub async fn probe(talk: &Printer, config: &Config, author: &str) -> Result<(), Complaint> {
+pub async fn probe(talk: &Printer, config: &Config, author: &str) -> Result<(), Diagnostic> {
     let found = socrates_author::probe(author, &keys(config)?).await.map_err(|why| {
-        Complaint::input(why.to_string(), "`socrates config author` shows address and key").with_code(Code::Author)
+        Diagnostic::input(why.to_string(), "`socrates config author` shows address and key").with_code(Code::Author)
     })?;
     let rung = found.rung.map_or("none", Rung::name);
     let (kept, told) = match found.kept {
@@ -204,7 +204,7 @@ fn part(dialect: Dialect) -> String {
 }
 
 /// The key of a kind of server: of its variable, else of its file.
-fn key(config: &Config, part: &str) -> Result<Option<ApiKey>, Complaint> {
+fn key(config: &Config, part: &str) -> Result<Option<ApiKey>, Diagnostic> {
     let variable = config.text(&format!("{part}key_variable"));
     let found = Some(variable).filter(|name| !name.is_empty()).and_then(|name| config.variable(&name));
     if let Some(key) = found.filter(|key| !key.trim().is_empty()) {
@@ -216,7 +216,7 @@ fn key(config: &Config, part: &str) -> Result<Option<ApiKey>, Complaint> {
     }
     let path = Path::new(&file);
     let unusable = |why: String| {
-        Complaint::input(
+        Diagnostic::input(
             format!("the key file `{file}` cannot be used: {why}"),
             format!("`{part}key_file` names a file that holds the key alone"),
         )
@@ -229,9 +229,9 @@ fn key(config: &Config, part: &str) -> Result<Option<ApiKey>, Complaint> {
     Ok(Some(ApiKey::new(&text)).filter(|key| !key.is_empty()))
 }
 
-fn word<T: std::str::FromStr<Err: std::fmt::Display>>(key: &str, text: &str, more: &str) -> Result<T, Complaint> {
+fn word<T: std::str::FromStr<Err: std::fmt::Display>>(key: &str, text: &str, more: &str) -> Result<T, Diagnostic> {
     text.parse::<T>().map_err(|why| {
-        Complaint::input(format!("`{key}`: {why}"), format!("it also takes {}", more.trim_end_matches(", ")))
+        Diagnostic::input(format!("`{key}`: {why}"), format!("it also takes {}", more.trim_end_matches(", ")))
     })
 }
 

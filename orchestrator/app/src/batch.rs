@@ -14,7 +14,7 @@ use crate::batch_stats;
 use crate::bundle::{self, Bundle};
 use crate::coverage::Coverage;
 use crate::encounters;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::index::{self, Index, Scenario, Traits};
 use crate::keep::{Form, Keep};
 use crate::kept::{self, Kept, Lines};
@@ -33,13 +33,13 @@ pub(crate) struct Found {
     /// Bundles that could not be read, and why.
     pub(crate) left_out: Vec<(String, String)>,
     /// What the planners did over all of them, or why that is not put together.
-    pub(crate) figures: Result<Pool, Complaint>,
+    pub(crate) figures: Result<Pool, Diagnostic>,
 }
 
 /// Names of the finished bundles right below this folder, in order, without the ending of those that are packed.
-pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
+pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Diagnostic> {
     let entries = std::fs::read_dir(root).map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("cannot read `{}`: {why}", root.display()),
             "name a bundle folder, or a folder that holds bundles",
         )
@@ -97,11 +97,11 @@ impl Card {
         name: &str,
         form: Form,
         reports: &[Report],
-    ) -> Result<Self, Complaint> {
+    ) -> Result<Self, Diagnostic> {
         let path = lies(name, form);
         // Folders are unique where ids need not be.
         let id = ScenarioId::new(name).or_else(|_| ScenarioId::new(&bundle.manifest.scenario));
-        let id = id.map_err(|bad| Complaint::input(bad.to_string(), "rename the folder"))?;
+        let id = id.map_err(|bad| Diagnostic::input(bad.to_string(), "rename the folder"))?;
         let row = BatchRow::of(&BatchEntry {
             lies: match form {
                 Form::Folder => Lies::Folder(&path),
@@ -137,7 +137,7 @@ impl Card {
         id: &ScenarioId,
         keep: Keep,
         lines: &Lines,
-    ) -> Result<Self, Complaint> {
+    ) -> Result<Self, Diagnostic> {
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
         let form = keep.form(bundle.manifest.verdict);
         let mut card = Self::of(bundle, Arc::clone(location), id.as_str(), form, &reports)?;
@@ -162,7 +162,7 @@ impl Card {
     }
 
     /// The card of a bundle of this name.
-    pub(crate) fn read(root: &Path, name: &str) -> Result<Self, Complaint> {
+    pub(crate) fn read(root: &Path, name: &str) -> Result<Self, Diagnostic> {
         let dir = root.join(name);
         // One recording at a time: a library is larger than the memory of a laptop.
         let (bundle, reports) = bundle::read_with_reports(&dir, |index, _| index == 0)?;
@@ -202,7 +202,7 @@ struct Held {
 }
 
 impl Holds {
-    fn of(root: &Path) -> Result<Self, Complaint> {
+    fn of(root: &Path) -> Result<Self, Diagnostic> {
         let found: BTreeSet<String> = bundles(root)?.into_iter().collect();
         let mut holds = Self { made: Vec::new(), failed: Vec::new(), repeated: BTreeMap::new() };
         let library = library_index::read(root);
@@ -245,7 +245,7 @@ struct Source<'a> {
 
 impl Source<'_> {
     /// The card of a scenario.
-    fn next(&mut self, held: &Held) -> Result<Card, Complaint> {
+    fn next(&mut self, held: &Held) -> Result<Card, Diagnostic> {
         let name = &held.name;
         if held.bundled {
             return self.cards.remove(name).map_or_else(|| Card::read(self.root, name), Ok);
@@ -256,7 +256,7 @@ impl Source<'_> {
         };
         let (kept, location) = reader.next()?.filter(|(kept, _)| kept.scenario.as_str() == name).ok_or_else(|| {
             let what = format!("`{}` does not hold `{name}` in its place", self.root.join(kept::FILE).display());
-            Complaint::input(what, "list and file are of two libraries: make the library again in an empty folder")
+            Diagnostic::input(what, "list and file are of two libraries: make the library again in an empty folder")
         })?;
         Ok(Card::kept(kept, location))
     }
@@ -264,7 +264,7 @@ impl Source<'_> {
 
 /// Writes `report.html`, `index.csv` and `planners.csv` into a folder of bundles: those its library lists first, in their order,
 /// then the others. Bundles whose cards are not at hand are read.
-pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) -> Result<Found, Complaint> {
+pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) -> Result<Found, Diagnostic> {
     let holds = Holds::of(root)?;
     let mut source = Source { root, cards, kept: None };
     let (mut page, mut index, mut repeats) =
@@ -334,7 +334,7 @@ pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) 
 }
 
 /// Writes page and tables of a folder of bundles and tells what is in it.
-pub(crate) fn report(talk: &Printer, root: &Path) -> Result<(), Complaint> {
+pub(crate) fn report(talk: &Printer, root: &Path) -> Result<(), Diagnostic> {
     let found = write(talk, root, BTreeMap::new())?;
     let page = root.join(layout::PAGE.path);
     let repeats = found.rows - found.distinct;
@@ -373,14 +373,14 @@ fn counted(report: &Report) -> Report {
 }
 
 /// What is said of a folder without bundles.
-pub(crate) fn none(dir: &Path) -> Complaint {
+pub(crate) fn none(dir: &Path) -> Diagnostic {
     if dir.join(kept::FILE).is_file() {
-        return Complaint::input(
+        return Diagnostic::input(
             format!("`{}` keeps no bundles, and this needs them", dir.display()),
             "make the library again with `--keep packed`, or in an empty folder the scenarios that are needed",
         );
     }
-    Complaint::input(
+    Diagnostic::input(
         format!("`{}` is no bundle and holds none", dir.display()),
         "name the folder that `socrates run` printed after `look`",
     )

@@ -5,7 +5,7 @@ use socrates_draw::Figures;
 use socrates_scoring::metrics::{Aggregation, KEY_FIGURES, sheet};
 use socrates_scoring::{Cell, Pool, PooledRun, Ranking, pool};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// Said in place of an order.
@@ -14,12 +14,12 @@ const NOT_COMPARED: &str = "not compared: no run that all planners have";
 pub(crate) const FILE: &str = "planners.csv";
 
 /// The reports of each scenario as one table, or why they are not put together.
-pub(crate) fn of(reports: &[(String, Vec<socrates_model::Report>)]) -> Result<Pool, Complaint> {
+pub(crate) fn of(reports: &[(String, Vec<socrates_model::Report>)]) -> Result<Pool, Diagnostic> {
     let runs: Vec<PooledRun<'_>> = reports
         .iter()
         .flat_map(|(scenario, reports)| reports.iter().map(move |report| PooledRun { scenario, report }))
         .collect();
-    pool(&runs).map_err(|why| Complaint::input(format!("the figures are not put together: {why}"), why.hint()))
+    pool(&runs).map_err(|why| Diagnostic::input(format!("the figures are not put together: {why}"), why.hint()))
 }
 
 /// Robots among the planners: a run without one has no figures of its own.

@@ -6,7 +6,7 @@ use serde_json::json;
 use socrates_bt::{Format, Includes, Library, Meaning, Options, Tree};
 use socrates_model::Fault;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 use crate::words::plural;
@@ -15,7 +15,7 @@ use crate::words::plural;
 const MAX_BYTES: u64 = 32 * 1024 * 1024;
 
 /// Reads trees, ticks every case of their conditions, and says what is wrong.
-pub fn check(talk: &Printer, trees: &[PathBuf], library: &str) -> Result<(), Complaint> {
+pub fn check(talk: &Printer, trees: &[PathBuf], library: &str) -> Result<(), Diagnostic> {
     let library = named(library)?;
     let (mut reports, mut wrong, mut broken) = (Vec::new(), Vec::new(), 0);
     for tree in trees {
@@ -28,13 +28,13 @@ pub fn check(talk: &Printer, trees: &[PathBuf], library: &str) -> Result<(), Com
         talk.result(&result);
         return Ok(());
     }
-    let mut complaint = Complaint::input(
+    let mut diagnostic = Diagnostic::input(
         format!("{broken} of {} cannot be loaded as {}", plural(trees.len(), "tree"), library.name()),
         "`socrates explain CODE` says what each fault means",
     );
-    complaint.causes = wrong;
-    complaint.result = Some(Box::new(result));
-    Err(complaint)
+    diagnostic.causes = wrong;
+    diagnostic.result = Some(Box::new(result));
+    Err(diagnostic)
 }
 
 /// Writes a tree in the XML version `to`, for the simulator `target` where one is named.
@@ -45,7 +45,7 @@ pub fn convert(
     library: Option<&str>,
     target: Option<&str>,
     out: Option<&Path>,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let (read, from) = load(tree, library)?;
     let target = target.map(named).transpose()?.unwrap_or(from);
     let (xml, notes) = socrates_bt::convert(&read, if to == "v3" { Format::V3 } else { Format::V4 }, target);
@@ -62,15 +62,15 @@ pub fn convert(
 }
 
 /// A library by its name.
-fn named(name: &str) -> Result<Library, Complaint> {
+fn named(name: &str) -> Result<Library, Diagnostic> {
     Library::named(name).ok_or_else(|| {
         let names: Vec<&str> = Library::ALL.iter().map(|library| library.name()).collect();
-        Complaint::input(format!("there is no node library `{name}`"), format!("libraries: {}", names.join(", ")))
+        Diagnostic::input(format!("there is no node library `{name}`"), format!("libraries: {}", names.join(", ")))
     })
 }
 
 /// An included file, looked for from the folder of the tree on.
-pub(crate) fn including(folder: &Path, path: &str) -> Option<String> {
+pub fn including(folder: &Path, path: &str) -> Option<String> {
     std::fs::read_to_string(folder.join(path)).ok()
 }
 
@@ -80,8 +80,8 @@ fn options<'a>(shown: &'a str, includes: Includes<'a>, library: Library) -> Opti
 }
 
 /// The faults of a tree's file.
-pub(crate) fn faulty(tree: &Path, faults: &[Fault]) -> Complaint {
-    Complaint::faults(
+pub fn faulty(tree: &Path, faults: &[Fault]) -> Diagnostic {
+    Diagnostic::faults(
         format!("`{}` has {}", tree.display(), plural(faults.len(), "fault")),
         faults,
         "`socrates explain CODE` says what each fault means",
@@ -93,7 +93,7 @@ fn check_one(
     file: &Path,
     library: Library,
     wrong: &mut Vec<String>,
-) -> Result<serde_json::Value, Complaint> {
+) -> Result<serde_json::Value, Diagnostic> {
     let bytes = files::bytes(file, MAX_BYTES, "name a tree in BehaviorTree.CPP XML")?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let includes = |path: &str| including(folder, path);
@@ -127,7 +127,7 @@ fn check_one(
 }
 
 /// A tree, by the library that was asked for, or the first that takes it.
-pub(crate) fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint> {
+pub fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Diagnostic> {
     let bytes = files::bytes(file, MAX_BYTES, "name a tree in BehaviorTree.CPP XML")?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let includes = |path: &str| including(folder, path);
@@ -151,7 +151,7 @@ pub(crate) fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library)
 }
 
 /// Draws a tree as text, or into a file.
-pub fn show(talk: &Printer, file: &Path, out: Option<&Path>, library: Option<&str>) -> Result<(), Complaint> {
+pub fn show(talk: &Printer, file: &Path, out: Option<&Path>, library: Option<&str>) -> Result<(), Diagnostic> {
     let (tree, library) = load(file, library)?;
     let text = socrates_bt::draw_text(&tree);
     let Some(out) = out else {
@@ -162,7 +162,7 @@ pub fn show(talk: &Printer, file: &Path, out: Option<&Path>, library: Option<&st
     let svg = socrates_bt::draw_svg(&tree);
     let bytes = if out.extension().is_some_and(|ext| ext == "png") {
         socrates_draw::png_from_svg(&svg, 1.5)
-            .map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
+            .map_err(|why| Diagnostic::input(why.to_string(), "choose an .svg file instead"))?
     } else {
         svg.into_bytes()
     };

@@ -9,7 +9,7 @@ use socrates_model::BuildingBrief;
 
 use crate::authors;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::map;
 use crate::output::Printer;
@@ -36,7 +36,7 @@ pub struct BuildOptions {
 /// Builds what a brief asks for into a folder: the floor plan, the location that it makes, and the brief.
 ///
 /// A folder that holds anything already is left as it is.
-pub async fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<(), Complaint> {
+pub async fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<(), Diagnostic> {
     let BuildOptions { what, author, seed, out } = options;
     map::is_free(out)?;
     let (brief, built) = match author {
@@ -49,17 +49,17 @@ pub async fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> R
 }
 
 /// What the rules of this program make of a sentence, or a brief says.
-fn ruled(what: &str, seed: u64) -> Result<(BuildingBrief, Built), Complaint> {
+fn ruled(what: &str, seed: u64) -> Result<(BuildingBrief, Built), Diagnostic> {
     let brief = brief(what)?;
     let built = socrates_maps::random::build(&brief, seed).map_err(|why| not_built(&why))?;
     Ok((brief, built))
 }
 
 /// Writes a building with its brief.
-fn write(talk: &Printer, brief: &BuildingBrief, built: &Built, seed: u64, out: &Path) -> Result<(), Complaint> {
+fn write(talk: &Printer, brief: &BuildingBrief, built: &Built, seed: u64, out: &Path) -> Result<(), Diagnostic> {
     let mut all = built.files.clone();
     let text = toml::to_string(brief)
-        .map_err(|why| Complaint::input(format!("the brief cannot be written: {why}"), "leave unusual letters out"))?;
+        .map_err(|why| Diagnostic::input(format!("the brief cannot be written: {why}"), "leave unusual letters out"))?;
     all.insert(BRIEF.to_owned(), text.into_bytes());
     map::folder(&all, out)?;
     told(talk, built);
@@ -99,16 +99,16 @@ fn told(talk: &Printer, built: &Built) {
     }
 }
 
-fn not_built(why: &NotBuilt) -> Complaint {
+fn not_built(why: &NotBuilt) -> Diagnostic {
     match why {
         NotBuilt::Unmet(unmet) => {
             let listed: Vec<String> = unmet.iter().map(ToString::to_string).collect();
-            Complaint::input(
+            Diagnostic::input(
                 format!("no such building: {}", listed.join("; ")),
                 "ask for less of it, or leave the form and the sizes open; another `--seed` draws others (docs/buildings.md)",
             )
         }
-        NotBuilt::Flawed(faults) => Complaint::faults(
+        NotBuilt::Flawed(faults) => Diagnostic::faults(
             "the building that was drawn is not usable",
             faults,
             "please report the brief and the seed; another seed draws another building",
@@ -123,7 +123,7 @@ async fn asked(
     author: &str,
     words: &str,
     seed: u64,
-) -> Result<(BuildingBrief, Built), Complaint> {
+) -> Result<(BuildingBrief, Built), Diagnostic> {
     let builds = |brief: &BuildingBrief| {
         socrates_maps::random::build(brief, seed).map_err(|why| match why {
             NotBuilt::Unmet(unmet) => unmet.iter().map(ToString::to_string).collect(),
@@ -148,7 +148,7 @@ fn is_file(what: &str) -> bool {
 }
 
 /// The brief in a file, or the one that a sentence says.
-fn brief(what: &str) -> Result<BuildingBrief, Complaint> {
+fn brief(what: &str) -> Result<BuildingBrief, Diagnostic> {
     let path = PathBuf::from(what);
     if is_file(what) {
         let hint = "docs/buildings.md shows the form of a brief";
@@ -156,19 +156,19 @@ fn brief(what: &str) -> Result<BuildingBrief, Complaint> {
         return toml::from_str(&text).map_err(|why| {
             let line =
                 why.span().map_or(1, |span| text.bytes().take(span.start).filter(|byte| *byte == b'\n').count() + 1);
-            Complaint::input(format!("`{}` line {line}: {}", path.display(), why.message().replace('\n', " ")), hint)
+            Diagnostic::input(format!("`{}` line {line}: {}", path.display(), why.message().replace('\n', " ")), hint)
         });
     }
     let read = socrates_offline::building::building(what);
     if !read.unread.is_empty() {
         let words: Vec<String> = read.unread.iter().map(|word| format!("`{word}`")).collect();
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("{} not understood: {}", plural(words.len(), "word"), words.join(", ")),
             "say it with rooms, counts, sizes and `next to`, ask a model (`--author`), or write a brief as a file (docs/buildings.md)",
         ));
     }
     read.brief.ok_or_else(|| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{what}` names no kind of building"),
             "begin with `a hospital`, `an office` or `a home`; halls and warehouses: `socrates map generate --random`",
         )
@@ -181,7 +181,7 @@ mod tests {
     use crate::output::Format;
 
     /// A building without a model.
-    fn build(talk: &Printer, what: &str, seed: u64, out: &Path) -> Result<(), Complaint> {
+    fn build(talk: &Printer, what: &str, seed: u64, out: &Path) -> Result<(), Diagnostic> {
         map::is_free(out)?;
         let (brief, built) = ruled(what, seed)?;
         write(talk, &brief, &built, seed, out)

@@ -14,7 +14,8 @@ mod whole;
 
 pub(crate) use files::{PACKED, archive, unpack_beside};
 pub(crate) use page::page;
-pub(crate) use read::{changed, commands, file, is_bundle, manifest, read, read_some, read_with_reports, reports};
+pub use read::{changed, read};
+pub(crate) use read::{commands, file, is_bundle, manifest, read_some, read_with_reports, reports};
 pub(crate) use whole::{copy, copy_dead, damaged, moved, whole};
 
 use std::collections::BTreeMap;
@@ -33,7 +34,7 @@ use socrates_stream::csv::joined;
 
 use self::beside::Beside;
 use self::collect::{Judged, Made, MadeRun, string};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::history::PastJob;
 use crate::keep::{Form, Keep};
 use crate::layout::{self, Sheet};
@@ -41,7 +42,7 @@ use crate::prepare::Prepared;
 
 /// One run in the manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RunEntry {
+pub struct RunEntry {
     /// Planner.
     pub(crate) planner: PlannerName,
     /// Simulation seed.
@@ -56,14 +57,15 @@ pub(crate) struct RunEntry {
 
 impl RunEntry {
     /// The run.
-    pub(crate) fn run(&self) -> Run {
+    #[must_use]
+    pub fn run(&self) -> Run {
         Run { planner: self.planner.clone(), seed: self.seed }
     }
 }
 
 /// What a bundle is made of; the last file written.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Manifest {
+pub struct Manifest {
     /// Format number.
     pub(crate) format: u32,
     /// Scenario id.
@@ -78,12 +80,12 @@ pub(crate) struct Manifest {
     /// Verdict of the reference run of the first seed.
     pub(crate) verdict: Verdict,
     /// Runs, the reference first.
-    pub(crate) runs: Vec<RunEntry>,
+    pub runs: Vec<RunEntry>,
     /// Runs that were wanted and have no result.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) failed: Vec<FailedRun>,
     /// Digest of every file of the bundle but this one and the provenance.
-    pub(crate) files: BTreeMap<String, Digest>,
+    pub files: BTreeMap<String, Digest>,
 }
 
 impl Manifest {
@@ -111,25 +113,25 @@ impl FailedRun {
 
 /// A finished bundle.
 #[derive(Debug, Clone)]
-pub(crate) struct Bundle {
+pub struct Bundle {
     /// Folder.
     pub(crate) dir: PathBuf,
     /// Manifest.
-    pub(crate) manifest: Manifest,
+    pub manifest: Manifest,
     /// The request.
-    pub(crate) request: Request,
+    pub request: Request,
     /// The location.
-    pub(crate) location: Location,
+    pub location: Location,
     /// The reading.
-    pub(crate) reading: Reading,
+    pub reading: Reading,
     /// The proposal.
-    pub(crate) proposal: Proposal,
+    pub proposal: Proposal,
     /// The paths.
-    pub(crate) paths: Paths,
+    pub paths: Paths,
     /// The trees.
-    pub(crate) behaviors: Behaviors,
+    pub behaviors: Behaviors,
     /// Runs, the reference first.
-    pub(crate) runs: Vec<(Recording, Report)>,
+    pub runs: Vec<(Recording, Report)>,
 }
 
 impl Bundle {
@@ -166,7 +168,7 @@ pub(crate) fn lies_in(dir: &Path, prepared: &Prepared, seed: u64) -> bool {
 }
 
 /// Where artifacts are read from.
-pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
+pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Diagnostic> + 'a;
 
 /// A finished scenario: what its bundle is written from.
 pub(crate) struct Past<'a> {
@@ -186,7 +188,7 @@ pub(crate) struct Past<'a> {
 
 /// Writes the bundle of a finished scenario in the form in which it is kept. It is there whole or, whatever happens on the way, not
 /// finished.
-pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Diagnostic> {
     let beside = Beside::new(past.work, past.status.id.as_str())?;
     let bundle = written(&beside.0, dir, prepared, seed, past)?;
     match past.keep.form(bundle.manifest.verdict) {
@@ -207,7 +209,7 @@ fn asked(request: &Request) -> String {
 }
 
 /// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
-fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Diagnostic> {
     let Made { reading, proposal, paths, behaviors, runs, failed } = collect::made(prepared, past)?;
     let Some((recording, report)) = runs.first().map(|run| &run.judged) else { return Err(missing(Role::Report)) };
     let verdict = report.verdict;
@@ -259,7 +261,7 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
 }
 
 /// Writes the request and its location, which make the scenario again.
-fn put_request(out: &mut Writer, prepared: &Prepared) -> Result<(), Complaint> {
+fn put_request(out: &mut Writer, prepared: &Prepared) -> Result<(), Diagnostic> {
     let request = toml::to_string_pretty(&portable(prepared)).map_err(|why| ours(&why.to_string()))?;
     out.put(&layout::REQUEST, &"", request.as_bytes())?;
     for (name, bytes) in &prepared.location_files {
@@ -270,7 +272,7 @@ fn put_request(out: &mut Writer, prepared: &Prepared) -> Result<(), Complaint> {
 }
 
 /// Writes every recording and report, and hands them back with their entries in the manifest.
-fn put_runs(out: &mut Writer, made: Vec<MadeRun>) -> Result<(Vec<Judged>, Vec<RunEntry>), Complaint> {
+fn put_runs(out: &mut Writer, made: Vec<MadeRun>) -> Result<(Vec<Judged>, Vec<RunEntry>), Diagnostic> {
     let (mut runs, mut entries) = (Vec::new(), Vec::new());
     for MadeRun { run, recording: bytes, commands, judged: (recording, report) } in made {
         out.put(&layout::RECORDINGS, &run, &bytes)?;
@@ -296,11 +298,11 @@ struct Writer {
 
 impl Writer {
     /// Writes the file of this name, or the only one of its kind.
-    fn put(&mut self, sheet: &Sheet, name: &dyn std::fmt::Display, bytes: &[u8]) -> Result<Digest, Complaint> {
+    fn put(&mut self, sheet: &Sheet, name: &dyn std::fmt::Display, bytes: &[u8]) -> Result<Digest, Diagnostic> {
         let file = sheet.of(name);
         let path = self.dir.join(&file);
         let cannot = |why: std::io::Error| {
-            Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+            Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
         };
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(cannot)?;
@@ -314,16 +316,16 @@ impl Writer {
     }
 }
 
-fn ours(what: &str) -> Complaint {
+fn ours(what: &str) -> Diagnostic {
     let hint = format!("this is our fault; `{}` holds what is needed to find it", layout::PROVENANCE.path);
-    Complaint::input(what, hint).with_code(crate::exit::Code::Ours)
+    Diagnostic::input(what, hint).with_code(crate::exit::Code::Ours)
 }
 
-fn missing(role: Role) -> Complaint {
+fn missing(role: Role) -> Diagnostic {
     ours(&format!("the scenario ended without a {role}"))
 }
 
-fn pretty<T: Serialize>(value: &T) -> Result<String, Complaint> {
+fn pretty<T: Serialize>(value: &T) -> Result<String, Diagnostic> {
     serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|why| ours(&why.to_string()))
 }
 

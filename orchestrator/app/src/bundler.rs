@@ -21,7 +21,7 @@ use tokio::sync::Notify;
 use crate::batch::Card;
 use crate::bundle;
 use crate::conclude::Finished;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::keep::Keep;
 use crate::kept::Lines;
 use crate::output::Printer;
@@ -46,7 +46,7 @@ struct Order {
 }
 
 /// What a scenario became: the card of its bundle, or why there is none.
-pub(crate) type Bundled = Result<Card, Complaint>;
+pub(crate) type Bundled = Result<Card, Diagnostic>;
 
 /// Writes the bundles of a batch.
 #[derive(Debug)]
@@ -117,7 +117,7 @@ impl Bundler {
     }
 
     /// Hands on what is done since the last look.
-    pub(crate) fn look(&mut self) -> Result<(), Complaint> {
+    pub(crate) fn look(&mut self) -> Result<(), Diagnostic> {
         let reader = match self.reader.take() {
             Some(reader) => reader,
             // Until the orchestrator has made it, there is no store, and nothing is done.
@@ -140,7 +140,7 @@ impl Bundler {
 
     /// Waits for the bundles that are not written yet, and hands back what became of every scenario. A signal ends the wait; what is
     /// written stays.
-    pub(crate) async fn finish(mut self, talk: &Printer) -> Result<BTreeMap<ScenarioId, Bundled>, Complaint> {
+    pub(crate) async fn finish(mut self, talk: &Printer) -> Result<BTreeMap<ScenarioId, Bundled>, Diagnostic> {
         let mut signals = Signals::listen()?;
         // A look moves on by its window at most.
         while {
@@ -211,7 +211,7 @@ impl Shared {
 
     /// The bundle of one scenario, or its line where no bundle is kept, written unless it lies there.
     fn bundle(&self, id: &ScenarioId, reader: &mut Option<Reader>) -> Bundled {
-        let stranger = || Complaint::resumes(format!("the job store holds `{id}`, which nobody asked for"));
+        let stranger = || Diagnostic::resumes(format!("the job store holds `{id}`, which nobody asked for"));
         let Order { seed, prepared, location } = self.orders.get(id).ok_or_else(stranger)?;
         let dir = self.root.join(id.as_str());
         if bundle::lies_in(&dir, prepared, *seed) {
@@ -224,7 +224,7 @@ impl Shared {
         if reader.is_none() {
             *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
         }
-        let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
+        let gone = || Diagnostic::resumes(format!("the job store has lost `{id}`"));
         let (work, keep) = (&self.work, self.keep);
         let finished = Finished { dir: &dir, work, id, prepared, seed: *seed, alone: false, keep };
         Card::written(&finished.by_store(reader.as_ref().ok_or_else(gone)?)?, location, id, keep, &lines)

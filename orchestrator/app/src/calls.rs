@@ -11,7 +11,7 @@ use socrates_model::wire::{
 use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 
 /// Limit of one call.
 const CALL: Duration = Duration::from_secs(2);
@@ -29,12 +29,12 @@ const ROWS_MOST: u64 = 256 << 20;
 const SUBMIT_AT_ONCE: usize = 40;
 
 /// Submits scenarios, in several messages if need be; gives how many were not known before.
-pub(crate) async fn submit(
+pub async fn submit(
     bus: &dyn Bus,
     batch: &str,
     priority: Priority,
     specs: Vec<ScenarioSpec>,
-) -> Result<u64, Complaint> {
+) -> Result<u64, Diagnostic> {
     let mut fresh: u64 = 0;
     let mut specs = specs.into_iter().peekable();
     while specs.peek().is_some() {
@@ -51,7 +51,7 @@ pub(crate) async fn submit_series(
     batch: &str,
     priority: Priority,
     series: Series,
-) -> Result<u64, Complaint> {
+) -> Result<u64, Diagnostic> {
     let count = series.count();
     let wish = Submit { series: vec![series], ..Submit::new(batch, priority, Vec::new()) };
     match hand_in(bus, &wish).await? {
@@ -61,26 +61,26 @@ pub(crate) async fn submit_series(
 }
 
 /// Says what a batch may take; before its scenarios are submitted.
-pub(crate) async fn limit(bus: &dyn Bus, batch: &str, limits: Limits) -> Result<(), Complaint> {
+pub(crate) async fn limit(bus: &dyn Bus, batch: &str, limits: Limits) -> Result<(), Diagnostic> {
     hand_in(bus, &Submit { limits, ..Submit::new(batch, Priority::Normal, Vec::new()) }).await?;
     Ok(())
 }
 
-fn earlier(what: &str) -> Complaint {
-    Complaint::input(
+fn earlier(what: &str) -> Diagnostic {
+    Diagnostic::input(
         format!("the orchestrator is of an earlier version: {what}"),
         "start `socrates cluster up` of this version, and its workers",
     )
 }
 
 /// Puts one submission until it is taken or refused; gives how many scenarios are new, and how many its series have.
-async fn hand_in(bus: &dyn Bus, wish: &Submit) -> Result<(u32, u32), Complaint> {
+async fn hand_in(bus: &dyn Bus, wish: &Submit) -> Result<(u32, u32), Diagnostic> {
     let started = Instant::now();
     loop {
         match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", wish, CALL).await {
             Ok(Submitted::Accepted { new, held }) => return Ok((new, held)),
             Ok(Submitted::Refused { why }) => {
-                return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
+                return Err(Diagnostic::input(format!("the orchestrator refuses: {why}"), ""));
             }
             Ok(Submitted::Busy { retry_after_ms }) => {
                 tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await;
@@ -88,7 +88,7 @@ async fn hand_in(bus: &dyn Bus, wish: &Submit) -> Result<(u32, u32), Complaint> 
             Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
                 tokio::time::sleep(Duration::from_millis(50)).await;
             }
-            Err(why) => return Err(Complaint::resumes(why.to_string())),
+            Err(why) => return Err(Diagnostic::resumes(why.to_string())),
         }
     }
 }
@@ -99,27 +99,27 @@ pub(crate) async fn status(bus: &dyn Bus, ask: &StatusAsk) -> Result<StatusReply
 }
 
 /// How many there are of what, in one batch or, where its name is empty, in all: no line of a scenario comes with it.
-pub(crate) async fn counts(bus: &dyn Bus, batch: &str) -> Result<StatusReply, LinkError> {
+pub async fn counts(bus: &dyn Bus, batch: &str) -> Result<StatusReply, LinkError> {
     status(bus, &StatusAsk { batch: batch.to_owned(), from: u32::MAX, ..StatusAsk::default() }).await
 }
 
 /// Whether so many workers of every stage are there.
-pub(crate) fn is_staffed(reply: &StatusReply, wanted: impl Fn(Stage) -> u32) -> bool {
+pub fn is_staffed(reply: &StatusReply, wanted: impl Fn(Stage) -> u32) -> bool {
     Stage::WORKERS.into_iter().all(|stage| reply.workers.get(stage.name()).is_some_and(|count| *count >= wanted(stage)))
 }
 
 /// What is said where the orchestrator does not answer.
-pub(crate) fn silent(why: LinkError) -> Complaint {
-    Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment").with_code(Code::Ours)
+pub(crate) fn silent(why: LinkError) -> Diagnostic {
+    Diagnostic::input(format!("the orchestrator does not answer: {why}"), "try again in a moment").with_code(Code::Ours)
 }
 
 /// Has something done about jobs. It is asked once: without an answer, look how things stand before asking again.
-pub(crate) async fn steer(bus: &dyn Bus, steer: Steer) -> Result<Steered, Complaint> {
+pub(crate) async fn steer(bus: &dyn Bus, steer: Steer) -> Result<Steered, Diagnostic> {
     let wish = Control::Steer(steer);
     let answer = call::<Control, Steered>(bus, keys::CONTROL, "control", &wish, STEERING).await;
     answer.map_err(|why| {
         if let LinkError::Refused { why, .. } = why {
-            return Complaint::input(
+            return Diagnostic::input(
                 format!("the orchestrator refuses: {why}"),
                 "one of an earlier version does not know this; start `socrates cluster up` of this version",
             );
@@ -129,7 +129,7 @@ pub(crate) async fn steer(bus: &dyn Bus, steer: Steer) -> Result<Steered, Compla
 }
 
 /// How every scenario stands, in order of submission.
-pub(crate) async fn ends(bus: &dyn Bus) -> Result<Vec<PastEnd>, Complaint> {
+pub(crate) async fn ends(bus: &dyn Bus) -> Result<Vec<PastEnd>, Diagnostic> {
     let mut all: Vec<PastEnd> = Vec::new();
     loop {
         let from = all.last().map_or(0, |end| end.place.saturating_add(1));
@@ -137,19 +137,19 @@ pub(crate) async fn ends(bus: &dyn Bus) -> Result<Vec<PastEnd>, Complaint> {
             PastPart::Ends(ends) if ends.is_empty() => return Ok(all),
             // One that answers with earlier places would be asked without end.
             PastPart::Ends(ends) if ends.iter().any(|end| end.place < from) => {
-                return Err(Complaint::resumes(format!(
+                return Err(Diagnostic::resumes(format!(
                     "the orchestrator told places before {from}, which was asked for"
                 )));
             }
             PastPart::Ends(ends) => all.extend(ends),
             PastPart::Rows { .. } => return Err(another()),
-            PastPart::Unknown { why } => return Err(Complaint::resumes(why)),
+            PastPart::Unknown { why } => return Err(Diagnostic::resumes(why)),
         }
     }
 }
 
 /// Everything that was tried for a scenario, as the JSON text of its rows.
-pub(crate) async fn rows(bus: &dyn Bus, scenario: &ScenarioId) -> Result<Vec<u8>, Complaint> {
+pub(crate) async fn rows(bus: &dyn Bus, scenario: &ScenarioId) -> Result<Vec<u8>, Diagnostic> {
     let mut text: Vec<u8> = Vec::new();
     let mut moment = None;
     let mut moments = 0_u32;
@@ -162,7 +162,7 @@ pub(crate) async fn rows(bus: &dyn Bus, scenario: &ScenarioId) -> Result<Vec<u8>
                 moment = None;
                 moments += 1;
                 if moments > MOMENTS {
-                    return Err(Complaint::resumes(format!(
+                    return Err(Diagnostic::resumes(format!(
                         "the rows of `{scenario}` change faster than they can be read"
                     )));
                 }
@@ -170,7 +170,7 @@ pub(crate) async fn rows(bus: &dyn Bus, scenario: &ScenarioId) -> Result<Vec<u8>
             PastPart::Rows { digest, len, bytes } => {
                 if len > ROWS_MOST {
                     let what = format!("the rows of `{scenario}` have {len} bytes, more than {ROWS_MOST}");
-                    return Err(Complaint::resumes(what));
+                    return Err(Diagnostic::resumes(what));
                 }
                 moment = Some(digest);
                 let ended = bytes.is_empty();
@@ -179,18 +179,18 @@ pub(crate) async fn rows(bus: &dyn Bus, scenario: &ScenarioId) -> Result<Vec<u8>
                     return if Digest::of(&text) == digest {
                         Ok(text)
                     } else {
-                        Err(Complaint::resumes(format!("the rows of `{scenario}` came torn")))
+                        Err(Diagnostic::resumes(format!("the rows of `{scenario}` came torn")))
                     };
                 }
             }
             PastPart::Ends(_) => return Err(another()),
-            PastPart::Unknown { why } => return Err(Complaint::resumes(why)),
+            PastPart::Unknown { why } => return Err(Diagnostic::resumes(why)),
         }
     }
 }
 
 /// One question about the past, asked again while the orchestrator is away.
-async fn past(bus: &dyn Bus, ask: PastAsk) -> Result<PastPart, Complaint> {
+async fn past(bus: &dyn Bus, ask: PastAsk) -> Result<PastPart, Diagnostic> {
     let started = Instant::now();
     loop {
         match call::<PastAsk, PastPart>(bus, keys::PAST, "past", &ask, CALL).await {
@@ -198,11 +198,11 @@ async fn past(bus: &dyn Bus, ask: PastAsk) -> Result<PastPart, Complaint> {
             Err(why) if why.is_transient() && started.elapsed() < AWAY => {
                 tokio::time::sleep(Duration::from_millis(100)).await
             }
-            Err(why) => return Err(Complaint::resumes(format!("the orchestrator cannot be asked: {why}"))),
+            Err(why) => return Err(Diagnostic::resumes(format!("the orchestrator cannot be asked: {why}"))),
         }
     }
 }
 
-fn another() -> Complaint {
-    Complaint::resumes("the orchestrator answered another question than was asked")
+fn another() -> Diagnostic {
+    Diagnostic::resumes("the orchestrator answered another question than was asked")
 }

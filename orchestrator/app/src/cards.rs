@@ -6,7 +6,7 @@ use serde_json::json;
 use socrates_model::{Location, Request};
 use socrates_offline::{Card, catalog};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// `a`, `+3`, or a dash: the place of a card in the lists.
 pub(crate) fn mark(card: &Card) -> String {
@@ -23,7 +23,7 @@ pub(crate) fn fitting(card: &Card) -> Vec<&'static str> {
     socrates_maps::shipped::names().iter().copied().filter(fits).collect()
 }
 
-pub(crate) fn find(id: &str) -> Result<&'static Card, Complaint> {
+pub(crate) fn find(id: &str) -> Result<&'static Card, Diagnostic> {
     catalog()
         .iter()
         .find(|card| card.id == id || card.letter.is_some_and(|letter| letter.to_string() == id))
@@ -36,20 +36,20 @@ pub(crate) fn find(id: &str) -> Result<&'static Card, Complaint> {
             } else {
                 format!("`socrates scenarios list` lists them; with `{first}` begin: {}", near.join(", "))
             };
-            Complaint::input(format!("there is no scenario `{id}`"), hint)
+            Diagnostic::input(format!("there is no scenario `{id}`"), hint)
         })
 }
 
 /// The shipped locations where a card fits.
-pub(crate) fn places(card: &Card) -> Result<Vec<Location>, Complaint> {
+pub fn places(card: &Card) -> Result<Vec<Location>, Diagnostic> {
     let load = |name: &str| crate::prepare::load_location(name, Path::new(".")).map(|(location, _)| location);
     fitting(card).into_iter().map(load).collect()
 }
 
 /// A request for this card, in a place where it fits.
-pub(crate) fn request(card: &Card, location: &str) -> Result<Request, Complaint> {
+pub fn request(card: &Card, location: &str) -> Result<Request, Diagnostic> {
     serde_json::from_value(json!({
         "location": location, "social_context": "", "task": "Deliver mail", "expect": { "pattern": card.id },
     }))
-    .map_err(|why| Complaint::input(format!("the card `{}` makes no request: {why}", card.id), ""))
+    .map_err(|why| Diagnostic::input(format!("the card `{}` makes no request: {why}", card.id), ""))
 }

@@ -9,14 +9,14 @@ use socrates_model::{AgentId, Clause, ClauseRole, PlannerName, Verdict};
 use socrates_orchestrator::pipeline;
 
 use crate::bundle::{self, Bundle};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 use crate::report::past;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Prints the methods paragraph and the entries of a bibliography.
-pub fn cite(talk: &Printer, dir: &Path) -> Result<(), Complaint> {
+pub fn cite(talk: &Printer, dir: &Path) -> Result<(), Diagnostic> {
     let bundle = bundle::read(dir)?;
     let (stages, _) = past(dir);
     let asked: u32 =

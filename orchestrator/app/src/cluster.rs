@@ -9,7 +9,7 @@ use socrates_model::wire::{Limits, Priority, ScenarioSpec};
 use socrates_model::{Digest, FaultCode, Statement};
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files::shell;
 use crate::many::{told_apart, wish};
 use crate::order::Order;
@@ -50,13 +50,14 @@ pub async fn submit(
     requests: &[PathBuf],
     to: &SubmitOptions,
     options: &RunOptions,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     elsewhere(options)?;
     let (mut prepared, refused) = prepared_all(config, requests, options)?;
     if !refused.is_empty() {
         Refused::told(talk, &refused, prepared.len())?;
     }
     for one in &prepared {
+        by_name(one)?;
         crate::prices::check_cents(config, &one.author, "--max-cents", to.limits.money / 10_000)?;
     }
     told_apart(&mut prepared);
@@ -148,7 +149,7 @@ fn problems(prepared: &[Prepared]) -> Vec<(&str, String)> {
 }
 
 /// Refuses options that are for runs on this machine.
-fn elsewhere(options: &RunOptions) -> Result<(), Complaint> {
+fn elsewhere(options: &RunOptions) -> Result<(), Diagnostic> {
     let here = [
         (options.out.is_some(), "--out", "`cluster collect --out` names the folder"),
         (options.ask, "--ask", "nobody looks while a cluster works"),
@@ -158,14 +159,26 @@ fn elsewhere(options: &RunOptions) -> Result<(), Complaint> {
     ];
     match here.into_iter().find(|(named, ..)| *named) {
         Some((_, option, hint)) => {
-            Err(Complaint::input(format!("`{option}` is for runs on this machine, not for a cluster"), hint))
+            Err(Diagnostic::input(format!("`{option}` is for runs on this machine, not for a cluster"), hint))
         }
         None => Ok(()),
     }
 }
 
+/// Refuses an author that is a folder: that of a cluster's worker is nothing that a submission may name.
+fn by_name(prepared: &Prepared) -> Result<(), Diagnostic> {
+    let Some(folder) = prepared.author.folder() else { return Ok(()) };
+    Err(Diagnostic::input(
+        format!(
+            "the request `{}` has the author `{}`, and the workers of a cluster open no folder that a submission names: `{folder}`",
+            prepared.name, prepared.author
+        ),
+        "name an author, such as `--author offline` or `--author openai:MODEL`; `socrates run` records and replays",
+    ))
+}
+
 /// The order of each request, with the digest of its text.
-fn orders(prepared: &[Prepared], library: Digest, blobs: &LocalBlobs) -> Result<Vec<(Digest, Order)>, Complaint> {
+fn orders(prepared: &[Prepared], library: Digest, blobs: &LocalBlobs) -> Result<Vec<(Digest, Order)>, Diagnostic> {
     let put = |bytes: &[u8]| blobs.put(bytes).map_err(|why| ours(why.to_string()));
     let one = |one: &Prepared| {
         let order = Order::of(one, library, &put)?;
@@ -180,6 +193,6 @@ fn inputs(spec: &ScenarioSpec) -> Vec<Digest> {
     own.into_iter().chain(spec.pinned.values().copied()).chain(spec.order).collect()
 }
 
-fn ours(why: String) -> Complaint {
-    Complaint::input(why, "").with_code(Code::Ours)
+fn ours(why: String) -> Diagnostic {
+    Diagnostic::input(why, "").with_code(Code::Ours)
 }

@@ -11,7 +11,7 @@ use tokio::sync::mpsc;
 
 use crate::config::Config;
 use crate::crew::{Crew, Member};
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::folder::Hold;
 use crate::logs;
 use crate::output::Printer;
@@ -42,19 +42,19 @@ pub struct WorkOptions {
 ///
 /// # Errors
 /// An endpoint where nobody listens, an unknown stage, a worker that cannot go on.
-pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Result<Code, Complaint> {
+pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Result<Code, Diagnostic> {
     let stages = stages(&options.stages)?;
     let cores = || std::thread::available_parallelism().map_or(1, |cores| u32::try_from(cores.get()).unwrap_or(1));
     let slots = options.slots.unwrap_or_else(cores);
     if slots == 0 || slots > MOST_SLOTS {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`--slots {slots}` is not 1 to {MOST_SLOTS}"),
             "without it there is one per core",
         ));
     }
     let dir = options.dir.clone().unwrap_or_else(|| PathBuf::from(format!("socrates-work-{}", process::host())));
     // Two crews in one folder would report each other's work.
-    let _hold = Hold::take(&dir).map_err(|why| Complaint {
+    let _hold = Hold::take(&dir).map_err(|why| Diagnostic {
         what: format!("`{}` is used by another `cluster work`, or cannot be written: {}", dir.display(), why.what),
         hint: "end that one, or name another folder with --dir".to_owned(),
         ..why
@@ -63,7 +63,7 @@ pub async fn work(talk: &Printer, config: &Config, options: &WorkOptions) -> Res
     let mut signals = Signals::listen()?;
     let bus = process::client(config, Role::Worker, &options.connect, &options.namespace, "crew").await?;
     let mut orchestrators =
-        bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| Complaint::resumes(why.to_string()))?;
+        bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| Diagnostic::resumes(why.to_string()))?;
     let (report, mut gave_up) = mpsc::channel(16);
     let mut crew = Crew::new();
     let roles = roles(config, options, &dir, &stages, slots)?;
@@ -117,14 +117,14 @@ async fn tell(talk: &Printer, orchestrators: &mut Presence) {
     std::future::pending::<()>().await;
 }
 
-fn stages(named: &[String]) -> Result<Vec<Stage>, Complaint> {
+fn stages(named: &[String]) -> Result<Vec<Stage>, Diagnostic> {
     if named.is_empty() {
         return Ok(Stage::WORKERS.to_vec());
     }
     let one = |name: &String| {
         let stage = Stage::WORKERS.into_iter().find(|stage| stage.name() == name);
         let all = Stage::WORKERS.map(Stage::name).join(", ");
-        stage.ok_or_else(|| Complaint::input(format!("there is no stage `{name}`"), format!("stages: {all}")))
+        stage.ok_or_else(|| Diagnostic::input(format!("there is no stage `{name}`"), format!("stages: {all}")))
     };
     let mut stages = named.iter().map(one).collect::<Result<Vec<_>, _>>()?;
     stages.dedup();
@@ -138,7 +138,7 @@ fn roles(
     dir: &Path,
     stages: &[Stage],
     slots: u32,
-) -> Result<Vec<Member>, Complaint> {
+) -> Result<Vec<Member>, Diagnostic> {
     let mut roles = Vec::new();
     for stage in stages {
         let count = if *stage == Stage::Simulation { slots } else { 1 };

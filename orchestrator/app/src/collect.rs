@@ -22,7 +22,7 @@ use tokio::task::JoinSet;
 use crate::batch::Card;
 use crate::conclude::Finished;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::folder::Hold;
 use crate::keep::{self, Keep};
 use crate::kept::Lines;
@@ -56,7 +56,7 @@ pub struct CollectOptions {
 ///
 /// # Errors
 /// No orchestrator, no such batch or several, a folder that holds something else, or scenarios that were submitted without an order.
-pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) -> Result<Code, Complaint> {
+pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) -> Result<Code, Diagnostic> {
     let bus = process::client(config, Role::Client, &options.connect, &options.namespace, "collect").await?;
     let ends = of_batch(calls::ends(bus.as_ref()).await?, options.batch.as_deref())?;
     let Some(first) = ends.first() else { return Err(empty(&options.connect)) };
@@ -95,22 +95,22 @@ pub async fn collect(talk: &Printer, config: &Config, options: &CollectOptions) 
 }
 
 /// Scenarios of a batch, those that are not made yet among them.
-async fn total(bus: &dyn Bus, batch: &str) -> Result<usize, Complaint> {
+async fn total(bus: &dyn Bus, batch: &str) -> Result<usize, Diagnostic> {
     let told = calls::counts(bus, batch).await.map_err(calls::silent)?;
     Ok(usize::try_from(told.total).unwrap_or(usize::MAX))
 }
 
 /// The scenarios of one batch in their order.
-fn of_batch(ends: Vec<PastEnd>, batch: Option<&str>) -> Result<Vec<PastEnd>, Complaint> {
+fn of_batch(ends: Vec<PastEnd>, batch: Option<&str>) -> Result<Vec<PastEnd>, Diagnostic> {
     let mut batches: BTreeMap<String, usize> = BTreeMap::new();
     ends.iter().for_each(|end| *batches.entry(end.batch.clone()).or_default() += 1);
     let told = || batches.iter().map(|(name, count)| format!("`{name}` ({count})")).collect::<Vec<_>>().join(", ");
     match batch {
         Some(name) if !batches.is_empty() && !batches.contains_key(name) => {
-            Err(Complaint::input(format!("there is no batch `{name}`"), format!("batches there: {}", told())))
+            Err(Diagnostic::input(format!("there is no batch `{name}`"), format!("batches there: {}", told())))
         }
         Some(name) => Ok(ends.into_iter().filter(|end| end.batch == name).collect()),
-        None if batches.len() > 1 => Err(Complaint::input(
+        None if batches.len() > 1 => Err(Diagnostic::input(
             format!("there are {} batches, and each is a library of its own", batches.len()),
             format!("--batch names one of: {}", told()),
         )),
@@ -118,8 +118,8 @@ fn of_batch(ends: Vec<PastEnd>, batch: Option<&str>) -> Result<Vec<PastEnd>, Com
     }
 }
 
-fn empty(connect: &str) -> Complaint {
-    Complaint::input(
+fn empty(connect: &str) -> Diagnostic {
+    Diagnostic::input(
         format!("nothing was submitted to `{connect}`"),
         format!("`socrates cluster submit REQUESTS --connect {connect}` hands scenarios in"),
     )
@@ -132,12 +132,12 @@ async fn bundles(
     done: &[PastEnd],
     into: Target<'_>,
     hold: &Hold,
-) -> Result<Vec<Ended>, Complaint> {
+) -> Result<Vec<Ended>, Diagnostic> {
     let at_once = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let mut progress = Progress::new(*talk, "collecting", done.len());
     let mut made: BTreeMap<u64, Ended> = BTreeMap::new();
     let mut waiting = done.iter();
-    let mut tasks: JoinSet<(u64, Result<Ended, Complaint>)> = JoinSet::new();
+    let mut tasks: JoinSet<(u64, Result<Ended, Diagnostic>)> = JoinSet::new();
     loop {
         while tasks.len() < at_once
             && let Some(end) = waiting.next()
@@ -149,7 +149,7 @@ async fn bundles(
         }
         let Some(came) = tasks.join_next().await else { break };
         let (place, ended) = came.map_err(|broke| {
-            Complaint::input(format!("a bundle could not be written: {broke}"), "").with_code(Code::Ours)
+            Diagnostic::input(format!("a bundle could not be written: {broke}"), "").with_code(Code::Ours)
         })?;
         hold.check()?;
         made.insert(place, ended?);
@@ -183,7 +183,7 @@ struct Request {
 
 impl Known {
     /// What the whole batch is made from.
-    async fn library(known: &Arc<Self>, first: &PastEnd) -> Result<Digest, Complaint> {
+    async fn library(known: &Arc<Self>, first: &PastEnd) -> Result<Digest, Diagnostic> {
         let rows = known.rows(first).await?;
         let (known, handle) = (Arc::clone(known), Handle::current());
         let read = move || {
@@ -193,10 +193,10 @@ impl Known {
         blocking(read).await
     }
 
-    async fn rows(&self, end: &PastEnd) -> Result<Snapshot, Complaint> {
+    async fn rows(&self, end: &PastEnd) -> Result<Snapshot, Diagnostic> {
         let text = calls::rows(self.bus.as_ref(), &end.scenario).await?;
         serde_json::from_slice(&text).map_err(|why| {
-            Complaint::input(
+            Diagnostic::input(
                 format!("the rows of `{}` cannot be read: {why}", end.scenario),
                 "orchestrator and this program must be of one version",
             )
@@ -204,7 +204,7 @@ impl Known {
     }
 
     /// The bundle of a scenario, fetched and written unless it lies there.
-    async fn bundle(self: Arc<Self>, end: &PastEnd, into: Target<'_>) -> Result<Ended, Complaint> {
+    async fn bundle(self: Arc<Self>, end: &PastEnd, into: Target<'_>) -> Result<Ended, Diagnostic> {
         let rows = self.rows(end).await?;
         let (known, handle) = (self, Handle::current());
         let (id, place, keep) = (end.scenario.clone(), end.place, into.keep);
@@ -242,8 +242,8 @@ impl Known {
         &self,
         spec: &socrates_model::wire::ScenarioSpec,
         place: u64,
-        fetch: &dyn Fn(&Digest) -> Result<Vec<u8>, Complaint>,
-    ) -> Result<Request, Complaint> {
+        fetch: &dyn Fn(&Digest) -> Result<Vec<u8>, Diagnostic>,
+    ) -> Result<Request, Diagnostic> {
         let orders = || self.orders.lock().unwrap_or_else(PoisonError::into_inner);
         let digest = spec.order.unwrap_or_else(|| Digest::of(b""));
         if let Some(known) = orders().get_mut(&digest) {
@@ -265,23 +265,23 @@ impl Known {
     }
 
     /// An artifact over the bus; for threads that may wait.
-    fn get(&self, handle: &Handle, digest: &Digest) -> Result<Vec<u8>, Complaint> {
+    fn get(&self, handle: &Handle, digest: &Digest) -> Result<Vec<u8>, Diagnostic> {
         let came = handle.block_on(Blobs::Bus.get(&self.bus, *digest, calls::PART));
-        came.map_err(|why| Complaint::resumes(format!("artifact {} cannot be fetched: {why}", digest.short())))
+        came.map_err(|why| Diagnostic::resumes(format!("artifact {} cannot be fetched: {why}", digest.short())))
     }
 }
 
-fn lost(what: &str) -> Complaint {
-    Complaint::resumes(format!("the orchestrator has lost `{what}`"))
+fn lost(what: &str) -> Diagnostic {
+    Diagnostic::resumes(format!("the orchestrator has lost `{what}`"))
 }
 
 /// Work that waits for the disk and the bus, on a thread of its own.
 async fn blocking<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, Complaint> + Send + 'static,
-) -> Result<T, Complaint> {
+    work: impl FnOnce() -> Result<T, Diagnostic> + Send + 'static,
+) -> Result<T, Diagnostic> {
     tokio::task::spawn_blocking(work)
         .await
-        .unwrap_or_else(|broke| Err(Complaint::input(format!("a thread broke: {broke}"), "").with_code(Code::Ours)))
+        .unwrap_or_else(|broke| Err(Diagnostic::input(format!("a thread broke: {broke}"), "").with_code(Code::Ours)))
 }
 
 #[cfg(test)]

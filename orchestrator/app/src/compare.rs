@@ -18,7 +18,7 @@ use socrates_scoring::compare::{CompareFault, Comparison, Entry, compare as comp
 use self::found::{Found, Scenario};
 use self::page::Rows;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::run_options::RunOptions;
 use crate::video::{self, Labels, VideoOptions};
@@ -56,7 +56,7 @@ pub struct CompareOptions {
 ///
 /// # Errors
 /// Requests that cannot be run, folders without bundles, planners without runs in common, files that cannot be written.
-pub async fn compare(talk: &Printer, config: &Config, options: &CompareOptions) -> Result<Code, Complaint> {
+pub async fn compare(talk: &Printer, config: &Config, options: &CompareOptions) -> Result<Code, Diagnostic> {
     let kept: Vec<bool> = options.what.iter().map(|what| holds_bundles(what)).collect();
     let default = || PathBuf::from("runs").join(format!("compare-{}", options.run.seed));
     let out = options.run.out.clone().unwrap_or_else(default);
@@ -65,7 +65,7 @@ pub async fn compare(talk: &Printer, config: &Config, options: &CompareOptions) 
         return write(talk, config, options, &out, &found, planners);
     }
     if let Some((what, _)) = options.what.iter().zip(&kept).find(|(_, kept)| **kept) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` holds bundles, and something else that is named is to be run", what.display()),
             "run the requests first, then name all folders of bundles together",
         ));
@@ -109,7 +109,7 @@ fn write(
     out: &Path,
     found: &Found,
     planners: Vec<PlannerName>,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     let entries: Vec<Entry<'_>> = found.scenarios.iter().flat_map(Scenario::entries).collect();
     let planners = if planners.is_empty() { under_test(&entries) } else { planners };
     let planners = tested(&planners, options.against.as_ref());
@@ -136,7 +136,7 @@ fn write(
 }
 
 /// Why there is no comparison, with what helps.
-fn refused(why: &CompareFault) -> Complaint {
+fn refused(why: &CompareFault) -> Diagnostic {
     let hint = match why {
         CompareFault::Few { .. } => "name several planners: --planner socrates_mppi,nav2can",
         CompareFault::Unknown { .. } => {
@@ -147,7 +147,7 @@ fn refused(why: &CompareFault) -> Complaint {
         }
         CompareFault::Unlike(why) => why.hint(),
     };
-    Complaint::input(why.to_string(), hint)
+    Diagnostic::input(why.to_string(), hint)
 }
 
 /// Prints what became of the runs and the figures that differ.
@@ -190,11 +190,11 @@ fn film(
     film: &Path,
     found: &Found,
     planners: &[PlannerName],
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let shown: Vec<PlannerName> = planners.iter().take(socrates_draw::film::PANELS).cloned().collect();
     let filmed = found.scenarios.iter().find_map(|scenario| Some((scenario, scenario.seeds(&shown).next()?)));
     let (scenario, seed) = filmed.ok_or_else(|| {
-        Complaint::input(
+        Diagnostic::input(
             "there is nothing to film: no scenario and seed has a result with every planner",
             "leave --film out",
         )

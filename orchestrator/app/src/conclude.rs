@@ -8,7 +8,7 @@ use socrates_orchestrator::Snapshot;
 use socrates_store::Reader;
 
 use crate::bundle::{self, Bundle, Fetch, Past};
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::history::History;
 use crate::keep::Keep;
 use crate::prepare::Prepared;
@@ -35,16 +35,16 @@ pub(crate) struct Finished<'a> {
 
 impl Finished<'_> {
     /// The bundle, written from what the job store and the artifacts of the work folder tell of it.
-    pub(crate) fn by_store(&self, reader: &Reader) -> Result<Bundle, Complaint> {
+    pub(crate) fn by_store(&self, reader: &Reader) -> Result<Bundle, Diagnostic> {
         let rows = reader.scenario(self.id).map_err(work::unread)?;
         let blobs = work::blobs(self.work);
         self.by_rows(rows, &|digest| work::fetch(&blobs, digest))
     }
 
     /// The bundle, written from these rows, with artifacts from wherever they are.
-    pub(crate) fn by_rows(&self, rows: Snapshot, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
+    pub(crate) fn by_rows(&self, rows: Snapshot, fetch: &Fetch<'_>) -> Result<Bundle, Diagnostic> {
         let Self { dir, work, id, prepared, seed, alone, keep } = *self;
-        let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
+        let gone = || Diagnostic::resumes(format!("the job store has lost `{id}`"));
         let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
         let history = History::of_rows(rows);
         let past = Past { status: &status, jobs: history.of(id), fetch, work, alone, keep };
@@ -58,7 +58,7 @@ impl Finished<'_> {
 }
 
 /// Writes the bundle, or says why there is none.
-fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Diagnostic> {
     let status = past.status;
     let scored = status.jobs.iter().any(|job| job.key.stage == Stage::Scoring && job.state == JobState::Succeeded);
     if scored {
@@ -67,7 +67,7 @@ fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Resu
     let faults: Vec<Fault> =
         status.jobs.iter().filter(|job| job.state != JobState::Succeeded).flat_map(|job| job.faults.clone()).collect();
     let author = faults.iter().any(|fault| fault.code.family() == Family::Transport);
-    let mut complaint = Complaint::faults(
+    let mut diagnostic = Diagnostic::faults(
         match status.result {
             Some(end) => format!("the scenario ended as `{end}` before it could be simulated"),
             None => "the scenario has not ended and was not simulated".to_owned(),
@@ -79,6 +79,6 @@ fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Resu
             "`socrates explain CODE` says what each fault means; say it in other words, or look at it with --ask"
         },
     );
-    complaint.code = if author { Code::Author } else { Code::NotRealised };
-    Err(complaint)
+    diagnostic.code = if author { Code::Author } else { Code::NotRealised };
+    Err(diagnostic)
 }

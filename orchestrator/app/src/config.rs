@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 
 /// The default configuration is also the manual.
 pub const BUILT_IN: &str = include_str!("../../../deploy/socrates.toml");
@@ -38,7 +38,7 @@ impl Config {
         file: Option<&Path>,
         env: impl Iterator<Item = (String, String)>,
         flags: &[String],
-    ) -> Result<Self, Complaint> {
+    ) -> Result<Self, Diagnostic> {
         let variables: BTreeMap<String, String> = env.collect();
         let mut values = BTreeMap::new();
         let built_in = parse(BUILT_IN, "built-in")?;
@@ -46,7 +46,7 @@ impl Config {
         let found = file.unwrap_or_else(|| Path::new("socrates.toml"));
         if file.is_some() || found.is_file() {
             let text = std::fs::read_to_string(found).map_err(|why| {
-                Complaint::input(
+                Diagnostic::input(
                     format!("cannot read the configuration `{}`: {why}", found.display()),
                     "check the path after --config",
                 )
@@ -73,11 +73,11 @@ impl Config {
     }
 
     /// The same with these values, written `key=value`, over its own.
-    pub fn with(mut self, flags: &[String]) -> Result<Self, Complaint> {
+    pub fn with(mut self, flags: &[String]) -> Result<Self, Diagnostic> {
         let values = &mut self.values;
         for flag in flags {
             let (key, text) = flag.split_once('=').ok_or_else(|| {
-                Complaint::input(
+                Diagnostic::input(
                     format!("`--set {flag}` has no value"),
                     "write --set key=value, for example --set supervisor.workers=2",
                 )
@@ -101,15 +101,15 @@ impl Config {
     }
 
     /// The file of the running program.
-    pub(crate) fn executable(&self) -> Result<&Path, Complaint> {
+    pub(crate) fn executable(&self) -> Result<&Path, Diagnostic> {
         self.program.file.as_deref().ok_or_else(|| {
-            Complaint::input("this program cannot find itself", "`socrates doctor` checks this machine")
+            Diagnostic::input("this program cannot find itself", "`socrates doctor` checks this machine")
                 .with_code(Code::Ours)
         })
     }
 
     /// Flags that give a child the same configuration.
-    pub(crate) fn passed_on(&self) -> &[String] {
+    pub fn passed_on(&self) -> &[String] {
         &self.passed_on
     }
 
@@ -152,9 +152,9 @@ impl Config {
     }
 }
 
-fn parse(text: &str, origin: &str) -> Result<toml::Table, Complaint> {
+fn parse(text: &str, origin: &str) -> Result<toml::Table, Diagnostic> {
     text.parse::<toml::Table>().map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("the configuration `{origin}` is not valid TOML: {why}"),
             "`socrates config` prints a valid one",
         )
@@ -178,12 +178,12 @@ fn flatten(prefix: &str, table: &toml::Table, origin: &str, out: &mut BTreeMap<S
     }
 }
 
-fn known(values: &BTreeMap<String, (toml::Value, String)>, key: &str, origin: &str) -> Result<(), Complaint> {
+fn known(values: &BTreeMap<String, (toml::Value, String)>, key: &str, origin: &str) -> Result<(), Diagnostic> {
     if values.contains_key(key) {
         return Ok(());
     }
     let all = values.keys().cloned().collect::<Vec<_>>().join(", ");
-    Err(Complaint::input(format!("{origin}: unknown configuration key `{key}`"), format!("allowed keys: {all}")))
+    Err(Diagnostic::input(format!("{origin}: unknown configuration key `{key}`"), format!("allowed keys: {all}")))
 }
 
 /// A file has the kinds of the built-in values: a text where a number is due would be read as 0.
@@ -191,7 +191,7 @@ fn same_kind(
     values: &BTreeMap<String, (toml::Value, String)>,
     key: &str,
     (value, origin): &(toml::Value, String),
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let Some((due, _)) = values.get(key) else { return Ok(()) };
     let is_whole = matches!((due, value), (toml::Value::Float(_), toml::Value::Integer(_)));
     // Counts are whole numbers from 0.
@@ -200,7 +200,7 @@ fn same_kind(
         return Ok(());
     }
     let (found, kind) = (value.type_str(), due.type_str());
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         format!("{origin}: `{key}` is `{value}`, {found}"),
         format!("it takes {kind}, such as `{due}`; `socrates config` prints the manual"),
     ))
@@ -211,9 +211,9 @@ fn typed(
     key: &str,
     text: &str,
     origin: &str,
-) -> Result<toml::Value, Complaint> {
+) -> Result<toml::Value, Diagnostic> {
     let wrong = |what: &str| {
-        Complaint::input(
+        Diagnostic::input(
             format!("{origin}: `{key}` is `{text}`"),
             format!("it takes {what}; `socrates config` prints the manual"),
         )

@@ -11,7 +11,7 @@ use socrates_orchestrator::{pipeline, price_of};
 
 use crate::bundle;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::ledger;
 use crate::output::Printer;
 use crate::prices::{Price, dollars, read_prices};
@@ -52,7 +52,7 @@ impl Sum {
 }
 
 /// Adds up the exchanges of bundles, of folders that hold bundles, and of folders of what was asked beside them.
-pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&Path>) -> Result<(), Complaint> {
+pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&Path>) -> Result<(), Diagnostic> {
     let named = config.text("author.prices");
     let file = prices.map(Path::to_path_buf).or_else(|| (!named.is_empty()).then(|| PathBuf::from(named)));
     let prices = file.as_deref().map_or_else(|| Ok(BTreeMap::new()), read_prices)?;
@@ -130,12 +130,12 @@ fn money(model: &str, sum: &Sum, prices: &BTreeMap<String, Price>) -> Option<(f6
 }
 
 /// The bundles among these folders and in them.
-pub(crate) fn bundles_in(what: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
+pub(crate) fn bundles_in(what: &[PathBuf]) -> Result<Vec<PathBuf>, Diagnostic> {
     let mut bundles = Vec::new();
     for path in what {
         let found = inside(path);
         if found.is_empty() {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{}` is neither a bundle nor a folder of bundles", path.display()),
                 "name what `socrates run` wrote, such as runs/NAME",
             ));
@@ -158,15 +158,15 @@ fn inside(path: &Path) -> Vec<PathBuf> {
 }
 
 /// What each model was asked for a bundle: every attempt of every revision, refused ones included.
-fn exchanges(dir: &Path) -> Result<BTreeMap<String, Sum>, Complaint> {
+fn exchanges(dir: &Path) -> Result<BTreeMap<String, Sum>, Diagnostic> {
     let name = crate::layout::PROVENANCE.path;
     let provenance: Value = serde_json::from_slice(&bundle::file(dir, name)?)
-        .map_err(|why| Complaint::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
+        .map_err(|why| Diagnostic::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
     Ok(sums(&provenance))
 }
 
 /// The models that were asked for a bundle, or rules, by their names.
-pub(crate) fn models(dir: &Path) -> Result<Vec<String>, Complaint> {
+pub(crate) fn models(dir: &Path) -> Result<Vec<String>, Diagnostic> {
     Ok(exchanges(dir)?.into_keys().collect())
 }
 

@@ -15,7 +15,7 @@ use tokio::time::Instant;
 
 use crate::child::{command, ended, leave};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 
 /// Deaths of a child in a minute after which it is not started again at once.
 const SUDDEN: u32 = 3;
@@ -50,9 +50,9 @@ impl Crew {
     pub(crate) fn add(
         &mut self,
         role: Member,
-        report: mpsc::Sender<Complaint>,
+        report: mpsc::Sender<Diagnostic>,
         restarts: usize,
-    ) -> Result<(), Complaint> {
+    ) -> Result<(), Diagnostic> {
         let child = spawn(&role, &role.first)?;
         self.keepers.push(tokio::spawn(keep(role, child, self.stop.subscribe(), report, restarts)));
         Ok(())
@@ -104,7 +104,7 @@ pub(crate) struct Member {
 
 impl Member {
     /// A child of this program with these arguments, and those that are passed on to every child.
-    pub(crate) fn new(config: &Config, name: &str, own: Vec<String>, first: Vec<String>) -> Result<Self, Complaint> {
+    pub(crate) fn new(config: &Config, name: &str, own: Vec<String>, first: Vec<String>) -> Result<Self, Diagnostic> {
         let mut args = own;
         args.extend_from_slice(config.passed_on());
         let program = config.executable()?.to_path_buf();
@@ -113,11 +113,11 @@ impl Member {
 }
 
 /// A fault of ours.
-pub(crate) fn ours(what: &str) -> Complaint {
-    Complaint::input(what, "`socrates doctor` checks this machine").with_code(Code::Ours)
+pub(crate) fn ours(what: &str) -> Diagnostic {
+    Diagnostic::input(what, "`socrates doctor` checks this machine").with_code(Code::Ours)
 }
 
-fn spawn(role: &Member, more: &[String]) -> Result<Child, Complaint> {
+fn spawn(role: &Member, more: &[String]) -> Result<Child, Diagnostic> {
     let mut command = command(&role.program);
     if role.few_arenas {
         command.env(ARENAS.0, ARENAS.1);
@@ -130,10 +130,10 @@ fn spawn(role: &Member, more: &[String]) -> Result<Child, Complaint> {
 }
 
 /// What a child said last: why it ended.
-async fn last_words(child: &mut Child) -> Option<Complaint> {
+async fn last_words(child: &mut Child) -> Option<Diagnostic> {
     let mut words = Vec::new();
     child.stdout.take()?.take(LAST_WORDS).read_to_end(&mut words).await.ok()?;
-    Complaint::of_object(&serde_json::from_slice(&words).ok()?)
+    Diagnostic::of_object(&serde_json::from_slice(&words).ok()?)
 }
 
 /// How long to wait before a child is started again that died so often in the last minute.
@@ -163,7 +163,7 @@ async fn keep(
     role: Member,
     mut child: Child,
     mut stopped: watch::Receiver<Stop>,
-    report: mpsc::Sender<Complaint>,
+    report: mpsc::Sender<Diagnostic>,
     restarts: usize,
 ) {
     let mut deaths: VecDeque<Instant> = VecDeque::new();
@@ -190,9 +190,9 @@ async fn keep(
         } else {
             None
         };
-        if let Some(complaint) = gave_up {
+        if let Some(diagnostic) = gave_up {
             // A process of ours that cannot go on is no fault of the input.
-            drop(report.send(complaint.with_code(Code::Ours)).await);
+            drop(report.send(diagnostic.with_code(Code::Ours)).await);
             return;
         }
         tracing::warn!(role = role.name, how, why, "a child died and is started again");

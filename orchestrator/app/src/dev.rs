@@ -5,16 +5,16 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// Largest file of the published tool that is read, bytes.
 const MAX_IMPORT_BYTES: u64 = 64 * 1024 * 1024;
 
 /// Prints the JSON schema of an artifact.
-pub fn schema(talk: &Printer, artifact: &str) -> Result<(), Complaint> {
+pub fn schema(talk: &Printer, artifact: &str) -> Result<(), Diagnostic> {
     let schema = socrates_model::schema::of(artifact).ok_or_else(|| {
-        Complaint::input(
+        Diagnostic::input(
             format!("there is no artifact `{artifact}`"),
             format!("artifacts: {}", socrates_model::schema::NAMES.join(", ")),
         )
@@ -26,10 +26,10 @@ pub fn schema(talk: &Printer, artifact: &str) -> Result<(), Complaint> {
 }
 
 /// What a file of the published tool holds.
-pub(crate) fn imported(file: &Path) -> Result<socrates_export::socrates_json::Imported, Complaint> {
+pub fn imported(file: &Path) -> Result<socrates_export::socrates_json::Imported, Diagnostic> {
     let text = crate::files::text(file, MAX_IMPORT_BYTES, "name a JSON file of the published tool")?;
     socrates_export::socrates_json::read(&text).map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{}`: {why}", file.display()),
             "the forms are scenario, trajectory, trees and combined",
         )
@@ -37,7 +37,7 @@ pub(crate) fn imported(file: &Path) -> Result<socrates_export::socrates_json::Im
 }
 
 /// Reads a file of the published tool and prints what it holds.
-pub fn import(talk: &Printer, file: &Path) -> Result<(), Complaint> {
+pub fn import(talk: &Printer, file: &Path) -> Result<(), Diagnostic> {
     let found = imported(file)?;
     let object = json!({ "proposal": found.proposal, "paths": found.paths, "behaviors": found.behaviors });
     talk.line(&serde_json::to_string_pretty(&object).unwrap_or_default());
@@ -46,10 +46,10 @@ pub fn import(talk: &Printer, file: &Path) -> Result<(), Complaint> {
 }
 
 /// Writes a bundle as the published tool's stage files.
-pub fn export(talk: &Printer, dir: &Path, out: &Path) -> Result<(), Complaint> {
+pub fn export(talk: &Printer, dir: &Path, out: &Path) -> Result<(), Diagnostic> {
     let bundle = bundle::read(dir)?;
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write into `{}`: {why}", out.display()), "--out chooses another folder")
+        Diagnostic::input(format!("cannot write into `{}`: {why}", out.display()), "--out chooses another folder")
     };
     std::fs::create_dir_all(out).map_err(cannot)?;
     let files = [

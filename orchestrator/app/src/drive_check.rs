@@ -16,7 +16,7 @@ use socrates_simulation::driving::{Line, body_of, told};
 
 use crate::config::Config;
 use crate::driver_process::DriverCommand;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::process::client;
 use crate::router::Router;
@@ -47,12 +47,12 @@ struct Finding {
 }
 
 /// Tries every message, and prints what came of each.
-pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> Result<(), Complaint> {
-    let folder = tempfile::tempdir().map_err(|why| Complaint::resumes(why.to_string()))?;
+pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> Result<(), Diagnostic> {
+    let folder = tempfile::tempdir().map_err(|why| Diagnostic::resumes(why.to_string()))?;
     let (bus, _router, _child) = match &options.place {
         Some(place) => {
             let (endpoint, namespace) = endpoint(place).ok_or_else(|| {
-                Complaint::input(
+                Diagnostic::input(
                     format!("nothing is served in `{place}`"),
                     "start `socrates serve`, or let --driver start the driver here",
                 )
@@ -70,7 +70,7 @@ pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> R
         }
     };
     let name = PlannerName::new(format!("external:{}", options.driver));
-    let name = name.map_err(|bad| Complaint::input(bad.to_string(), "a driver is named without `external:`"))?;
+    let name = name.map_err(|bad| Diagnostic::input(bad.to_string(), "a driver is named without `external:`"))?;
     let findings = Exam { line: Line::new(bus, &options.driver, PATIENCE), name }.all().await;
     let failed = findings.iter().filter(|finding| finding.outcome.is_err()).count();
     for Finding { what, outcome } in &findings {
@@ -88,7 +88,7 @@ pub async fn check(talk: &Printer, config: &Config, options: &CheckOptions) -> R
         return Ok(());
     }
     let what = format!("the driver `{}` fails {failed} of {} checks", options.driver, findings.len());
-    Err(Complaint::input(what, "docs/wire.md has every message").with_code(Code::Input))
+    Err(Diagnostic::input(what, "docs/wire.md has every message").with_code(Code::Input))
 }
 
 /// The driver under examination.

@@ -12,7 +12,7 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
 use crate::child::{command, ended, leave};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Starts in a row without a claim after which it is not started again.
 const IDLE: u32 = 2;
@@ -29,11 +29,11 @@ pub(crate) struct DriverCommand {
 
 impl DriverCommand {
     /// Reads a command line as a shell would.
-    pub(crate) fn read(line: &str, endpoint: &str, namespace: &str) -> Result<Self, Complaint> {
+    pub(crate) fn read(line: &str, endpoint: &str, namespace: &str) -> Result<Self, Diagnostic> {
         let mut words = shlex::split(line).unwrap_or_default().into_iter();
         let Some(program) = words.next() else {
             let hint = "write --driver \"python3 my_planner.py\", for example; quotation marks come in pairs";
-            return Err(Complaint::input(format!("`--driver {line}` is no command"), hint));
+            return Err(Diagnostic::input(format!("`--driver {line}` is no command"), hint));
         };
         let (endpoint, namespace) = (endpoint.to_owned(), namespace.to_owned());
         Ok(Self { line: line.to_owned(), program: PathBuf::from(program), args: words.collect(), endpoint, namespace })
@@ -41,10 +41,10 @@ impl DriverCommand {
 
     /// Starts it. It leaves when its standard input closes; what it prints goes beside our own words, so that results stay alone on
     /// standard output.
-    pub(crate) fn start(&self) -> Result<Child, Complaint> {
+    pub(crate) fn start(&self) -> Result<Child, Diagnostic> {
         let cannot = |why: std::io::Error| {
             let hint = "name a program of the search path, or its path";
-            Complaint::input(format!("the driver `{}` cannot be started: {why}", self.line), hint)
+            Diagnostic::input(format!("the driver `{}` cannot be started: {why}", self.line), hint)
         };
         let said = std::io::stderr().as_fd().try_clone_to_owned().map_err(cannot)?;
         command(&self.program)
@@ -64,7 +64,7 @@ impl DriverCommand {
         mut child: Child,
         mut claims: Presence,
         mut stopped: watch::Receiver<Stop>,
-        report: mpsc::Sender<Complaint>,
+        report: mpsc::Sender<Diagnostic>,
     ) {
         let mut idle = 0;
         loop {
@@ -82,11 +82,11 @@ impl DriverCommand {
             } else {
                 let what = format!("the driver `{}` ends by itself ({how})", self.line);
                 let hint = "start it by hand to see why; it has to stay until its standard input closes";
-                Err(Complaint::input(what, hint))
+                Err(Diagnostic::input(what, hint))
             };
             match next {
                 Ok(next) => child = next,
-                Err(complaint) => return drop(report.send(complaint).await),
+                Err(diagnostic) => return drop(report.send(diagnostic).await),
             }
         }
     }

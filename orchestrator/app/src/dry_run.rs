@@ -18,7 +18,7 @@ use socrates_prompts::Style;
 
 use self::measured::{Disk, Past};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::keep::Keep;
 use crate::kept::Lines;
 use crate::output::Printer;
@@ -28,7 +28,7 @@ use crate::refused::Refused;
 use crate::run_options::RunOptions;
 use crate::wanted::{Wanted, wanted};
 use crate::words::plural;
-use crate::{bundle, keep, many, prices, tokens, variants};
+use crate::{bundle, expected_tokens, keep, many, prices, variants};
 
 /// Stages in the order in which they are told.
 const STAGES: [Stage; 6] =
@@ -61,7 +61,7 @@ pub(crate) async fn tell(
     options: &RunOptions,
     mut prepared: Vec<Prepared>,
     refused: &[Refused],
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     talk.line("dry run    nothing is written, no model is asked");
     if !refused.is_empty() {
         Refused::told(talk, refused, prepared.len())?;
@@ -121,7 +121,7 @@ pub(crate) async fn tell(
 }
 
 /// Where it goes, and what is kept there.
-fn goes(options: &RunOptions, prepared: &[Prepared], scenarios: usize, alone: bool) -> Result<Goes, Complaint> {
+fn goes(options: &RunOptions, prepared: &[Prepared], scenarios: usize, alone: bool) -> Result<Goes, Diagnostic> {
     let driven = prepared.iter().any(Prepared::is_driven);
     let (base, wish) = match prepared.first() {
         Some(one) if alone => {
@@ -191,7 +191,7 @@ fn jobs(open: &[&Wanted<'_>]) -> BTreeMap<Stage, u64> {
 }
 
 /// What each author is asked, rules nothing.
-async fn asked(open: &[&Wanted<'_>]) -> Result<BTreeMap<String, Asked>, Complaint> {
+async fn asked(open: &[&Wanted<'_>]) -> Result<BTreeMap<String, Asked>, Diagnostic> {
     let mut requests: Vec<(&Prepared, Vec<&Wanted<'_>>)> = Vec::new();
     for one in open {
         match requests.iter_mut().find(|(prepared, _)| std::ptr::eq(*prepared, one.prepared)) {
@@ -206,22 +206,22 @@ async fn asked(open: &[&Wanted<'_>]) -> Result<BTreeMap<String, Asked>, Complain
             continue;
         }
         let style = Style::from_settings(&prepared.style)
-            .map_err(|bad| Complaint::input(bad.to_string(), "`socrates config prompt` shows the style"))?;
-        let expected = tokens::expected(&prepared.request, &prepared.reading, &prepared.location, &style).await?;
+            .map_err(|bad| Diagnostic::input(bad.to_string(), "`socrates config prompt` shows the style"))?;
+        let expected =
+            expected_tokens::expected(&prepared.request, &prepared.reading, &prepared.location, &style).await?;
         let stages: Vec<Stage> =
             all.first().map(|one| pipeline::authored(&spec(one))).into_iter().flatten().map(|job| job.0).collect();
         let scenarios = u64::try_from(all.len()).unwrap_or(u64::MAX);
         for (_, [input, output]) in expected.iter().filter(|(stage, _)| stages.contains(stage)) {
-            let times = |tokens: usize| scenarios.saturating_mul(u64::try_from(tokens).unwrap_or(u64::MAX));
             sum.calls += scenarios;
-            sum.input += times(*input);
-            sum.output += times(*output);
+            sum.input += scenarios.saturating_mul(*input);
+            sum.output += scenarios.saturating_mul(*output);
         }
     }
     Ok(models)
 }
 
-fn told_author(config: &Config, author: &str, asked: Asked) -> Result<String, Complaint> {
+fn told_author(config: &Config, author: &str, asked: Asked) -> Result<String, Diagnostic> {
     let Asked { calls, input, output } = asked;
     if author == AuthorSpec::Offline.to_string() {
         return Ok("offline: rules, no call of a model".to_owned());
@@ -233,8 +233,8 @@ fn told_author(config: &Config, author: &str, asked: Asked) -> Result<String, Co
         format!(" · {:.2} {}", (input as f64 * price.input + output as f64 * price.output) / 1e6, price.currency)
     });
     Ok(format!(
-        "{author}: {} · {} tokens in, {} out{cost}, when every first answer is taken; one that is refused is asked again. Tokens are o200k's, \
-         answers as long as the offline author's",
+        "{author}: {} · {} tokens in, {} out{cost}, when every first answer is taken; one that is refused is asked again. Tokens are \
+         estimated by bytes, answers as long as the offline author's",
         plural(usize::try_from(calls).unwrap_or(usize::MAX), "call"),
         thousands(input),
         thousands(output)

@@ -28,7 +28,7 @@ pub enum Code {
 
 /// An error for the user: what, causes, a hint with a command that helps, and the exit code.
 #[derive(Debug)]
-pub struct Complaint {
+pub struct Diagnostic {
     /// Exit code.
     pub code: Code,
     /// What is wrong, with the value.
@@ -41,7 +41,7 @@ pub struct Complaint {
     pub result: Option<Box<serde_json::Value>>,
 }
 
-impl Complaint {
+impl Diagnostic {
     /// Bad input.
     pub fn input(what: impl Into<String>, hint: impl Into<String>) -> Self {
         Self { code: Code::Input, what: what.into(), causes: Vec::new(), hint: hint.into(), result: None }
@@ -95,7 +95,7 @@ impl Complaint {
     }
 }
 
-impl fmt::Display for Complaint {
+impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.what)?;
         for cause in &self.causes {
@@ -108,4 +108,4 @@ impl fmt::Display for Complaint {
     }
 }
 
-impl std::error::Error for Complaint {}
+impl std::error::Error for Diagnostic {}

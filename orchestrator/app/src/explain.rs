@@ -9,7 +9,7 @@ use socrates_scoring::metrics::{CATALOG, Direction, Family, Sheet};
 
 use crate::bundle;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::{Format, Printer};
 
 /// The word for the list of metrics.
@@ -131,7 +131,7 @@ fn near(text: &str) -> Vec<String> {
 }
 
 /// Prints the page of a code, a metric or a word, or a list of them.
-pub fn explain(talk: &Printer, what: &[String]) -> Result<(), Complaint> {
+pub fn explain(talk: &Printer, what: &[String]) -> Result<(), Diagnostic> {
     let what = what.join(" ");
     match what.as_str() {
         "" => {
@@ -176,7 +176,7 @@ pub fn explain(talk: &Printer, what: &[String]) -> Result<(), Complaint> {
                 "`socrates explain` lists every code, `socrates explain {METRICS}` every metric, `socrates explain {WORDS}` every word"
             );
             let hint = if near.is_empty() { lists } else { format!("near: {}; {lists}", near.join(", ")) };
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{what}` is neither a code nor a metric nor a word of the program"),
                 hint,
             ));
@@ -186,10 +186,10 @@ pub fn explain(talk: &Printer, what: &[String]) -> Result<(), Complaint> {
 }
 
 /// Prints the effective configuration.
-pub fn config(talk: &Printer, config: &Config, part: Option<&str>) -> Result<(), Complaint> {
+pub fn config(talk: &Printer, config: &Config, part: Option<&str>) -> Result<(), Diagnostic> {
     let lines = config.lines(part);
     if lines.is_empty() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("no configuration key begins with `{}`", part.unwrap_or_default()),
             "`socrates config` prints all of them",
         ));
@@ -220,7 +220,7 @@ pub fn config(talk: &Printer, config: &Config, part: Option<&str>) -> Result<(),
 }
 
 /// Opens the page of a bundle with the desktop's program, or says where it is. A packed bundle becomes a folder beside its file.
-pub fn open(talk: &Printer, what: &Path) -> Result<(), Complaint> {
+pub fn open(talk: &Printer, what: &Path) -> Result<(), Diagnostic> {
     let folder = match bundle::archive(what) {
         Some(archive) => {
             let folder = bundle::unpack_beside(&archive)?;
@@ -231,7 +231,7 @@ pub fn open(talk: &Printer, what: &Path) -> Result<(), Complaint> {
     };
     let page = folder.join(crate::layout::PAGE.path);
     if !page.is_file() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` has no report.html", what.display()),
             "name the folder that `socrates run` printed after `look`",
         ));
@@ -243,7 +243,7 @@ pub fn open(talk: &Printer, what: &Path) -> Result<(), Complaint> {
 }
 
 /// Checks what this machine can do.
-pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Complaint> {
+pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Diagnostic> {
     let key_found = crate::authors::key_found(config)?;
     let program = |name: &str| config.installed(name).is_some();
     let listen = std::net::TcpListener::bind("127.0.0.1:0").is_ok();
@@ -290,7 +290,7 @@ pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Complaint> {
     if missing.is_empty() {
         Ok(())
     } else {
-        Err(Complaint::input(format!("missing: {}", missing.join(", ")), "see the lines marked ✘"))
+        Err(Diagnostic::input(format!("missing: {}", missing.join(", ")), "see the lines marked ✘"))
     }
 }
 

@@ -17,7 +17,7 @@ use socrates_orchestrator::{Attempt, AttemptEnd, Scenario, Snapshot, whys_of_row
 use socrates_store::Reader;
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files::shell;
 use crate::history::{History, PastJob};
 use crate::output::Printer;
@@ -73,7 +73,7 @@ pub async fn explain(
     job: &str,
     at: &Where,
     logs: &[PathBuf],
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let ask = asked_for(job)?;
     let mut known = match at {
         Where::Endpoint(endpoint, namespace) => of_endpoint(config, &ask, endpoint, namespace).await?,
@@ -94,14 +94,14 @@ pub async fn explain(
 }
 
 /// The same of an orchestrator that is connected to already, as lines.
-pub(crate) async fn of_bus(bus: &dyn Bus, job: &str) -> Result<Vec<String>, Complaint> {
+pub(crate) async fn of_bus(bus: &dyn Bus, job: &str) -> Result<Vec<String>, Diagnostic> {
     let ask = asked_for(job)?;
     told(&ask, &asked(bus, &ask).await?)
 }
 
-fn asked_for(job: &str) -> Result<JobAsk, Complaint> {
+fn asked_for(job: &str) -> Result<JobAsk, Diagnostic> {
     job.parse().map_err(|bad: socrates_model::ids::BadId| {
-        Complaint::input(
+        Diagnostic::input(
             bad.to_string(),
             "a job is SCENARIO, SCENARIO/STAGE or SCENARIO/STAGE/ITEM, such as s-1/simulation/reference-1",
         )
@@ -109,7 +109,7 @@ fn asked_for(job: &str) -> Result<JobAsk, Complaint> {
 }
 
 /// Everything that is known, in lines.
-fn told(ask: &JobAsk, known: &Known) -> Result<Vec<String>, Complaint> {
+fn told(ask: &JobAsk, known: &Known) -> Result<Vec<String>, Diagnostic> {
     if known.whys.is_empty() {
         return Err(no_job(ask, &known.past));
     }
@@ -173,7 +173,7 @@ fn logged_words(line: &logs::Line) -> String {
     words
 }
 
-async fn of_endpoint(config: &Config, ask: &JobAsk, endpoint: &str, namespace: &str) -> Result<Known, Complaint> {
+async fn of_endpoint(config: &Config, ask: &JobAsk, endpoint: &str, namespace: &str) -> Result<Known, Diagnostic> {
     let bus = process::looker(config, endpoint, namespace, "explain").await?;
     let known = asked(bus.as_ref(), ask).await;
     bus.close().await;
@@ -181,7 +181,7 @@ async fn of_endpoint(config: &Config, ask: &JobAsk, endpoint: &str, namespace: &
 }
 
 /// What an orchestrator knows.
-async fn asked(bus: &dyn Bus, ask: &JobAsk) -> Result<Known, Complaint> {
+async fn asked(bus: &dyn Bus, ask: &JobAsk) -> Result<Known, Diagnostic> {
     let question = StatusAsk { job: Some(ask.clone()), ..StatusAsk::default() };
     let reply = calls::status(bus, &question).await.map_err(calls::silent)?;
     if reply.whys.as_ref().is_some_and(Vec::is_empty) {
@@ -193,7 +193,7 @@ async fn asked(bus: &dyn Bus, ask: &JobAsk) -> Result<Known, Complaint> {
     }
     let text = calls::rows(bus, &ask.scenario).await?;
     let rows: Snapshot = serde_json::from_slice(&text).map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("the rows of `{}` cannot be read: {why}", ask.scenario),
             "orchestrator and this program must be of one version",
         )
@@ -212,14 +212,14 @@ async fn asked(bus: &dyn Bus, ask: &JobAsk) -> Result<Known, Complaint> {
 }
 
 /// What a folder holds, and what its orchestrator says where a run goes on in it.
-async fn of_folder(config: &Config, ask: &JobAsk, folder: &Path) -> Result<Known, Complaint> {
+async fn of_folder(config: &Config, ask: &JobAsk, folder: &Path) -> Result<Known, Diagnostic> {
     if let Some((endpoint, namespace)) = endpoint(&folder.display().to_string()).filter(|_| folder.is_dir()) {
         let known = of_endpoint(config, ask, &endpoint, &namespace).await?;
         return Ok(Known { logs: log_folders(folder), ..known });
     }
     let stores = [work::store(folder), work::store(&folder.join(place::WORK))];
     let store = stores.into_iter().find(|store| store.is_file()).ok_or_else(|| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{}` holds no job store", folder.display()),
             format!(
                 "name the folder of a run that is not done, or of `socrates cluster up --dir`; a finished bundle tells in {} what \
@@ -229,7 +229,7 @@ async fn of_folder(config: &Config, ask: &JobAsk, folder: &Path) -> Result<Known
         )
     })?;
     let unread = |why: socrates_store::StoreError| {
-        Complaint::input(format!("cannot read `{}`: {why}", store.display()), "name the folder of a job store")
+        Diagnostic::input(format!("cannot read `{}`: {why}", store.display()), "name the folder of a job store")
     };
     let reader = Reader::open(&store).map_err(unread)?;
     let rows = reader.scenario(&ask.scenario).map_err(unread)?;
@@ -261,20 +261,20 @@ fn past(rows: Snapshot, ask: &JobAsk) -> Vec<PastJob> {
 }
 
 /// What is said of a scenario that nobody knows.
-fn no_scenario(ask: &JobAsk, names: &[String]) -> Complaint {
+fn no_scenario(ask: &JobAsk, names: &[String]) -> Diagnostic {
     let wanted = ask.scenario.to_string();
     let mut near: Vec<(f64, &String)> = names.iter().map(|name| (strsim::jaro_winkler(name, &wanted), name)).collect();
     near.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(b.1)));
     let near: Vec<String> = near.into_iter().take(NEAR).map(|(_, name)| format!("`{name}`")).collect();
     let hint =
         if near.is_empty() { "nothing was submitted there".to_owned() } else { format!("near: {}", near.join(", ")) };
-    Complaint::input(format!("there is no scenario `{wanted}`"), hint)
+    Diagnostic::input(format!("there is no scenario `{wanted}`"), hint)
 }
 
 /// What is said of a job that a scenario does not have.
-fn no_job(ask: &JobAsk, past: &[PastJob]) -> Complaint {
+fn no_job(ask: &JobAsk, past: &[PastJob]) -> Diagnostic {
     let keys: Vec<String> = past.iter().take(24).map(|job| job.key.to_string()).collect();
-    Complaint::input(format!("there is no job `{ask}`"), format!("jobs there: {}", keys.join(", ")))
+    Diagnostic::input(format!("there is no job `{ask}`"), format!("jobs there: {}", keys.join(", ")))
 }
 
 /// A job: how it stands, why, and what was tried.

@@ -11,12 +11,12 @@ use socrates_prompts::{Question, Role, parse_behaviors, parse_paths, parse_propo
 
 use crate::bundle;
 use crate::cost::bundles_in;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 
 /// Exports.
-pub fn export(talk: &Printer, what: &[PathBuf], out: &Path) -> Result<(), Complaint> {
+pub fn export(talk: &Printer, what: &[PathBuf], out: &Path) -> Result<(), Diagnostic> {
     let bundles = bundles_in(what)?;
     let mut asked = Vec::new();
     let mut silent = 0;
@@ -42,11 +42,11 @@ pub fn export(talk: &Printer, what: &[PathBuf], out: &Path) -> Result<(), Compla
 
 /// What was asked for a bundle. One question is what has the same stage and inputs: asked again, with another seed, or after a
 /// run it stays the same question.
-fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
+fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Diagnostic> {
     let name = crate::layout::PROVENANCE.path;
     let text = bundle::file(dir, name)?;
     let provenance: Value = serde_json::from_slice(&text)
-        .map_err(|why| Complaint::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
+        .map_err(|why| Diagnostic::input(format!("`{}`: {why}", dir.join(name).display()), "make the bundle again"))?;
     let whole = bundle::read_some(dir, |_, _| false)?;
     let mut found: BTreeMap<(Stage, String), Vec<Exchange>> = BTreeMap::new();
     let mut reviewed = false;

@@ -13,7 +13,7 @@ use socrates_stream::ros::BagPen;
 
 use crate::bundle;
 use crate::cost::bundles_in;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::layout;
 use crate::output::Printer;
@@ -44,8 +44,8 @@ fn missing(format: &Format) -> Option<&'static str> {
 }
 
 /// Why something is not written by a program without a feature.
-fn unbuilt(what: &dyn Display, feature: &str) -> Complaint {
-    Complaint::input(
+fn unbuilt(what: &dyn Display, feature: &str) -> Diagnostic {
+    Diagnostic::input(
         format!("cannot write `{what}`: this program was built without the feature `{feature}`"),
         format!("build it with `cargo build --release -p socrates --features {feature}`"),
     )
@@ -72,8 +72,8 @@ pub fn formats(talk: &Printer) {
 ///
 /// # Errors
 /// A format that is none, or a bundle that cannot be exported; of a library all others are written first.
-pub fn export(talk: &Printer, options: &ExportOptions) -> Result<(), Complaint> {
-    let format = Format::named(&options.format).map_err(|why| complaint(&why, None))?;
+pub fn export(talk: &Printer, options: &ExportOptions) -> Result<(), Diagnostic> {
+    let format = Format::named(&options.format).map_err(|why| diagnostic(&why, None))?;
     if let Some(feature) = missing(format) {
         return Err(unbuilt(&format.name, feature));
     }
@@ -104,7 +104,7 @@ fn library(
     format: &Format,
     run: Option<&Run>,
     out: &Path,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let mut left: Vec<(String, String, usize)> = Vec::new();
     let (mut made, mut refused) = (Vec::new(), Vec::new());
     for (index, dir) in bundles.iter().enumerate() {
@@ -129,7 +129,7 @@ fn library(
         talk.line(&format!("left       {what}: in {count} of {}; {why}", plural(made.len(), "bundle")));
     }
     talk.line(&format!("wrote      {} (a folder for each bundle, {NOT_CARRIED} beside the files)", out.display()));
-    let refusals: Vec<String> = refused.iter().map(Complaint::short).collect();
+    let refusals: Vec<String> = refused.iter().map(Diagnostic::short).collect();
     let result =
         json!({ "format": format.name, "out": out.display().to_string(), "bundles": made, "refused": refusals });
     let Some(first) = refused.first() else {
@@ -137,13 +137,13 @@ fn library(
         return Ok(());
     };
     let what = format!("{} of {} cannot be exported", refusals.len(), plural(bundles.len(), "bundle"));
-    Err(Complaint { causes: refusals, result: Some(Box::new(result)), ..Complaint::input(what, first.hint.clone()) })
+    Err(Diagnostic { causes: refusals, result: Some(Box::new(result)), ..Diagnostic::input(what, first.hint.clone()) })
 }
 
 /// Exports one bundle into a folder; what was written, and which run.
-fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Package, String), Complaint> {
+fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Package, String), Diagnostic> {
     let (scenario, run) = scenario(dir, run)?;
-    let package = format.export(&scenario).map_err(|why| complaint(&why, Some(dir)))?;
+    let package = format.export(&scenario).map_err(|why| diagnostic(&why, Some(dir)))?;
     for (name, file) in &package.files {
         let path = out.join(name);
         match file {
@@ -152,7 +152,7 @@ fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Pa
             File::Database(database) => sqlite::write(&path, database)?,
             File::Columns(table) => columns(&path, table)?,
             File::Bag(bag) => {
-                let problem = |why: String| Complaint::input(format!("{}: {why}", path.display()), "please report it");
+                let problem = |why: String| Diagnostic::input(format!("{}: {why}", path.display()), "please report it");
                 files::write(&path, &bag_bytes(bag).map_err(problem)?)?;
             }
         }
@@ -163,14 +163,14 @@ fn one(dir: &Path, format: &Format, run: Option<&Run>, out: &Path) -> Result<(Pa
 
 /// Writes a table of Parquet.
 #[cfg(feature = "parquet")]
-fn columns(path: &Path, table: &Columns) -> Result<(), Complaint> {
+fn columns(path: &Path, table: &Columns) -> Result<(), Diagnostic> {
     // Makes the folder, and says what keeps a file from being written there.
     files::write(path, b"")?;
     crate::parquet_file::table(path, table)
 }
 
 #[cfg(not(feature = "parquet"))]
-fn columns(path: &Path, _: &Columns) -> Result<(), Complaint> {
+fn columns(path: &Path, _: &Columns) -> Result<(), Diagnostic> {
     Err(unbuilt(&path.display(), "parquet"))
 }
 
@@ -195,13 +195,13 @@ fn list(losses: &Losses, format: &Format) -> String {
 }
 
 /// A bundle as exporters get it, and the name of its run.
-fn scenario(dir: &Path, run: Option<&Run>) -> Result<(Scenario, String), Complaint> {
+fn scenario(dir: &Path, run: Option<&Run>) -> Result<(Scenario, String), Diagnostic> {
     let manifest = bundle::read_some(dir, |_, _| false)?.manifest;
     let runs: Vec<Run> = manifest.runs.iter().map(bundle::RunEntry::run).collect();
     let chosen = match run {
         Some(run) => runs.iter().position(|other| other == run).ok_or_else(|| {
             let names: Vec<String> = runs.iter().map(ToString::to_string).collect();
-            Complaint::input(
+            Diagnostic::input(
                 format!("`{}` has no run `{run}`", dir.display()),
                 format!("its runs: {}", names.join(", ")),
             )
@@ -244,7 +244,7 @@ fn stem(dir: &Path) -> String {
     name.strip_suffix(bundle::PACKED).unwrap_or(&name).to_owned()
 }
 
-fn complaint(why: &Unusable, dir: Option<&Path>) -> Complaint {
+fn diagnostic(why: &Unusable, dir: Option<&Path>) -> Diagnostic {
     let of = dir.map_or_else(String::new, |dir| format!("`{}`: ", dir.display()));
-    Complaint::input(format!("{of}{why}"), why.hint.clone())
+    Diagnostic::input(format!("{of}{why}"), why.hint.clone())
 }

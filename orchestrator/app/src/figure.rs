@@ -6,7 +6,7 @@ use serde_json::json;
 use socrates_model::{Recording, Run};
 
 use crate::bundle;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::video::shown_runs;
 
@@ -26,10 +26,10 @@ pub struct FigureOptions {
 }
 
 /// Writes the figure.
-pub fn figure(talk: &Printer, options: &FigureOptions) -> Result<(), Complaint> {
+pub fn figure(talk: &Printer, options: &FigureOptions) -> Result<(), Diagnostic> {
     let ending = options.out.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !matches!(ending.as_str(), "svg" | "png" | "pdf") {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` is no figure: its ending is `{ending}`", options.out.display()),
             "name a file that ends in .svg, .pdf or .png",
         ));
@@ -40,12 +40,12 @@ pub fn figure(talk: &Printer, options: &FigureOptions) -> Result<(), Complaint> 
     let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
     let shown: Vec<&Recording> = runs.iter().filter_map(|run| bundle.recording(run)).collect();
     let svg = socrates_draw::figure(&bundle.location, Some(&bundle.paths), &all, &shown, options.width_mm)
-        .map_err(|why| Complaint::input(why.to_string(), "`socrates figure --help` names what is allowed"))?;
+        .map_err(|why| Diagnostic::input(why.to_string(), "`socrates figure --help` names what is allowed"))?;
     let bytes = match ending.as_str() {
         "png" => socrates_draw::png_at_dpi(&svg, f32::from(options.dpi))
-            .map_err(|why| Complaint::input(why.to_string(), "a smaller --dpi, or an SVG").with_code(Code::Input))?,
+            .map_err(|why| Diagnostic::input(why.to_string(), "a smaller --dpi, or an SVG").with_code(Code::Input))?,
         "pdf" => socrates_draw::pdf_from_svg(&svg, &bundle.proposal.title)
-            .map_err(|why| Complaint::input(why.to_string(), "an SVG holds the same figure").with_code(Code::Ours))?,
+            .map_err(|why| Diagnostic::input(why.to_string(), "an SVG holds the same figure").with_code(Code::Ours))?,
         _ => svg.into_bytes(),
     };
     crate::files::write(&options.out, &bytes)?;

@@ -3,32 +3,32 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// Bytes of a file of at most `max` bytes.
-pub(crate) fn bytes(path: &Path, max: u64, hint: &str) -> Result<Vec<u8>, Complaint> {
-    let cannot = |why: std::io::Error| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint);
+pub fn bytes(path: &Path, max: u64, hint: &str) -> Result<Vec<u8>, Diagnostic> {
+    let cannot = |why: std::io::Error| Diagnostic::input(format!("cannot read `{}`: {why}", path.display()), hint);
     let length = std::fs::metadata(path).map_err(cannot)?.len();
     if length > max {
         let what = format!("`{}` has {length} bytes", path.display());
-        return Err(Complaint::input(what, format!("at most {max} bytes are read")));
+        return Err(Diagnostic::input(what, format!("at most {max} bytes are read")));
     }
     std::fs::read(path).map_err(cannot)
 }
 
 /// Text of a file of at most `max` bytes.
-pub(crate) fn text(path: &Path, max: u64, hint: &str) -> Result<String, Complaint> {
+pub fn text(path: &Path, max: u64, hint: &str) -> Result<String, Diagnostic> {
     String::from_utf8(bytes(path, max, hint)?).map_err(|why| {
         let at = why.utf8_error().valid_up_to();
-        Complaint::input(format!("`{}` is not UTF-8 text (byte {at})", path.display()), "save it as UTF-8")
+        Diagnostic::input(format!("`{}` is not UTF-8 text (byte {at})", path.display()), "save it as UTF-8")
     })
 }
 
 /// Writes a file, and the folders above it.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Complaint> {
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another place")
+        Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another place")
     };
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(cannot)?;
@@ -37,7 +37,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Complaint> {
 }
 
 /// Writes a text to a file, or says it where none is named.
-pub(crate) fn write_or_say(talk: &Printer, text: &str, out: Option<&Path>) -> Result<(), Complaint> {
+pub(crate) fn write_or_say(talk: &Printer, text: &str, out: Option<&Path>) -> Result<(), Diagnostic> {
     match out {
         Some(out) => {
             write(out, text.as_bytes())?;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 
 /// What a folder for its owner alone may be used for: everything by its owner, nothing by others.
 const OWNER: u32 = 0o700;
@@ -35,16 +35,16 @@ const SHARED: [(i64, &str); 9] = [
 ];
 
 /// Makes the folder of a store that must survive, and refuses one that other machines see as well.
-pub(crate) fn of_one_machine(dir: &Path) -> Result<(), Complaint> {
+pub(crate) fn of_one_machine(dir: &Path) -> Result<(), Diagnostic> {
     let shown = dir.display();
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write into `{shown}`: {why}"), "--dir chooses another folder")
+        Diagnostic::input(format!("cannot write into `{shown}`: {why}"), "--dir chooses another folder")
     };
     // What it holds is its owner's: requests, answers of models, artifacts.
     std::fs::DirBuilder::new().recursive(true).mode(OWNER).create(dir).map_err(cannot)?;
     let kind = rustix::fs::statfs(dir).map_err(|why| cannot(why.into()))?.f_type;
     shared(kind).map_or(Ok(()), |name| {
-        Err(Complaint::input(
+        Err(Diagnostic::input(
             format!("`{shown}` lies on {name}, which several machines see: the store of jobs would be lost there sooner or later"),
             "--dir names a folder on a disk of this machine, such as /var/lib/socrates; artifacts and bundles are fetched with \
              `socrates cluster collect`, which may write onto a shared folder",
@@ -84,15 +84,15 @@ const MAKING: HoldFor = HoldFor {
 
 impl Hold {
     /// Takes a work folder, made where needed, and closes it to other users.
-    pub(crate) fn take(work: &Path) -> Result<Self, Complaint> {
+    pub(crate) fn take(work: &Path) -> Result<Self, Diagnostic> {
         Self::take_for(work, MAKING)
     }
 
     /// The same for something else than making a run.
-    pub(crate) fn take_for(work: &Path, what: HoldFor) -> Result<Self, Complaint> {
+    pub(crate) fn take_for(work: &Path, what: HoldFor) -> Result<Self, Diagnostic> {
         let made = work.parent().unwrap_or(work).display();
         let cannot =
-            |why: std::io::Error| Complaint::input(format!("cannot write into `{made}`: {why}"), what.elsewhere);
+            |why: std::io::Error| Diagnostic::input(format!("cannot write into `{made}`: {why}"), what.elsewhere);
         std::fs::create_dir_all(work).map_err(cannot)?;
         std::fs::set_permissions(work, Permissions::from_mode(OWNER)).map_err(cannot)?;
         let path = work.join(HOLD_FILE);
@@ -102,7 +102,7 @@ impl Hold {
             Err(std::fs::TryLockError::WouldBlock) => {
                 let holder = std::fs::read_to_string(&path).unwrap_or_default();
                 let told = format!("`{made}` is {} by process {}", what.doing, holder.trim());
-                return Err(Complaint::input(told, what.instead));
+                return Err(Diagnostic::input(told, what.instead));
             }
             Err(std::fs::TryLockError::Error(why)) => return Err(cannot(why)),
         }
@@ -117,7 +117,7 @@ impl Hold {
     }
 
     /// Says so when the folder was taken away under its maker.
-    pub(crate) fn check(&self) -> Result<(), Complaint> {
+    pub(crate) fn check(&self) -> Result<(), Diagnostic> {
         let same = |there: std::fs::Metadata| {
             self.file.metadata().is_ok_and(|held| (held.dev(), held.ino()) == (there.dev(), there.ino()))
         };
@@ -125,7 +125,7 @@ impl Hold {
             return Ok(());
         }
         let folder = self.path.parent().unwrap_or(&self.path).display().to_string();
-        Err(Complaint::input(
+        Err(Diagnostic::input(
             format!("the folder `{folder}` was removed while it was worked in, so the run ends"),
             "the same command begins anew",
         )
@@ -134,7 +134,7 @@ impl Hold {
 }
 
 /// A folder for the socket of a run: nobody else can enter it, and its path is short enough for a socket.
-pub(crate) fn socket_folder(work: &Path, temp: &Path) -> Result<TempDir, Complaint> {
+pub(crate) fn socket_folder(work: &Path, temp: &Path) -> Result<TempDir, Diagnostic> {
     let places = [temp.to_path_buf(), PathBuf::from("/tmp"), work.to_path_buf()];
     let mut last = String::new();
     for place in places {
@@ -146,7 +146,7 @@ pub(crate) fn socket_folder(work: &Path, temp: &Path) -> Result<TempDir, Complai
             Err(why) => last = format!("`{}`: {why}", place.display()),
         }
     }
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         format!("there is no folder for the socket of the run: {last}"),
         "TMPDIR names a folder that can be written and has a short path",
     ))

@@ -17,7 +17,7 @@ use socrates_model::{Digest, ScenarioEnd};
 use socrates_store::{Audit, Checked, Counts, Named, Stands, StoreError, audit};
 
 use crate::bundle::Manifest;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::library_index::{self, Library};
 use crate::output::Printer;
 use crate::progress::Progress;
@@ -54,7 +54,7 @@ struct Store {
 ///
 /// # Errors
 /// A folder that holds neither, and a store that cannot be read or was written by a newer program.
-pub fn fsck(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Complaint> {
+pub fn fsck(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Diagnostic> {
     let found = folders.iter().map(|folder| found(folder)).collect::<Result<Vec<_>, _>>()?;
     let works: BTreeSet<&PathBuf> = found.iter().filter_map(|found| found.work.as_ref()).collect();
     let stores = works.into_iter().map(|work| store(talk, work)).collect::<Result<Vec<_>, _>>()?;
@@ -113,11 +113,11 @@ fn of_store(store: &Store) -> Value {
 }
 
 /// What lies in a folder; it must be something.
-fn found(folder: &Path) -> Result<Found, Complaint> {
+fn found(folder: &Path) -> Result<Found, Diagnostic> {
     let shown = folder.display();
     if !folder.is_dir() {
         let what = if folder.exists() { "is no folder" } else { "is not there" };
-        return Err(Complaint::input(format!("`{shown}` {what}"), HINT));
+        return Err(Diagnostic::input(format!("`{shown}` {what}"), HINT));
     }
     let places = [folder.to_path_buf(), folder.join(place::WORK)];
     let work = places.into_iter().find(|work| work::store(work).exists());
@@ -139,14 +139,14 @@ fn found(folder: &Path) -> Result<Found, Complaint> {
     };
     let listed = if root.join(library_index::FILE).is_file() { Some(library_index::read_whole(root)?) } else { None };
     if work.is_none() && bundles.is_empty() && listed.is_none() {
-        return Err(Complaint::input(format!("`{shown}` holds neither a job store nor a bundle"), HINT));
+        return Err(Diagnostic::input(format!("`{shown}` holds neither a job store nor a bundle"), HINT));
     }
     let kept = kept::names(root)?;
     Ok(Found { work, bundles, listed, kept })
 }
 
 /// Audits the store of a work folder and looks for its artifacts.
-fn store(talk: &Printer, work: &Path) -> Result<Store, Complaint> {
+fn store(talk: &Printer, work: &Path) -> Result<Store, Diagnostic> {
     let file = work::store(work);
     let Audit { counts, mut checked, named, scenarios } = audit(&file).map_err(|why| unread(&file, &why))?;
     checked.push(artifacts(talk, &work::blobs(work), &named));
@@ -154,7 +154,7 @@ fn store(talk: &Printer, work: &Path) -> Result<Store, Complaint> {
 }
 
 /// What is said of a store that cannot be audited.
-fn unread(file: &Path, why: &StoreError) -> Complaint {
+fn unread(file: &Path, why: &StoreError) -> Diagnostic {
     let hint = match why {
         StoreError::Newer { .. } => "use the program that wrote it, or a newer one",
         StoreError::Locked { .. } => "the same command again, once the other process is done",
@@ -167,10 +167,10 @@ fn unread(file: &Path, why: &StoreError) -> Complaint {
             "the file is no job store of this program, or damaged beyond reading: put back a copy of it"
         }
     };
-    let mut complaint = Complaint::input(format!("the job store `{}` cannot be read", file.display()), hint);
-    complaint.causes.push(why.to_string());
-    complaint.causes.extend(why.source().map(ToString::to_string));
-    complaint
+    let mut diagnostic = Diagnostic::input(format!("the job store `{}` cannot be read", file.display()), hint);
+    diagnostic.causes.push(why.to_string());
+    diagnostic.causes.extend(why.source().map(ToString::to_string));
+    diagnostic
 }
 
 /// Whether every artifact that the store names is there, with the length and the content that its name says.
@@ -357,7 +357,7 @@ mod tests {
     use super::*;
     use crate::output::Format;
 
-    fn refused(folder: &Path) -> Complaint {
+    fn refused(folder: &Path) -> Diagnostic {
         fsck(&Printer::to_nobody(Format::Text), &[folder.to_path_buf()]).unwrap_err()
     }
 

@@ -8,7 +8,7 @@ use socrates_export::{Graph, Losses, Unusable, nav2_route, node_link, rmf};
 use socrates_maps::{EXTRA, GRAPH, written};
 use socrates_model::{Door, FORMAT, Grid, Location, Point, SceneGraph};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::map;
 use crate::output::Printer;
@@ -46,10 +46,10 @@ impl GraphFormat {
         }
     }
 
-    fn named(name: &str) -> Result<Self, Complaint> {
+    fn named(name: &str) -> Result<Self, Diagnostic> {
         Self::ALL.into_iter().find(|format| format.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
-            Complaint::input(format!("`{name}` is no format of graphs"), format!("choose one of: {names}"))
+            Diagnostic::input(format!("`{name}` is no format of graphs"), format!("choose one of: {names}"))
         })
     }
 
@@ -64,7 +64,7 @@ impl GraphFormat {
 }
 
 /// Writes a location in a format of others, and beside it the list of what that format cannot hold.
-pub fn export(talk: &Printer, name: &str, to: &str, out: Option<&Path>) -> Result<(), Complaint> {
+pub fn export(talk: &Printer, name: &str, to: &str, out: Option<&Path>) -> Result<(), Diagnostic> {
     let format = GraphFormat::named(to)?;
     let (location, _) = load_location(name, Path::new("."))?;
     let out = out.map_or_else(|| PathBuf::from(format.file(&location.name)), Path::to_path_buf);
@@ -124,11 +124,11 @@ struct Read {
 }
 
 /// Makes a location folder from a file of another tool, with the list of what a location cannot hold.
-pub fn import(talk: &Printer, file: &Path, options: &ImportOptions) -> Result<(), Complaint> {
+pub fn import(talk: &Printer, file: &Path, options: &ImportOptions) -> Result<(), Diagnostic> {
     let format = GraphFormat::named(&options.from)?;
     let out = &options.out;
     if out.join(GRAPH).exists() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` has a scene graph already, which is left as it is", out.display()),
             "name another folder with `--out`, or remove its scene_graph.json",
         ));
@@ -149,7 +149,7 @@ pub fn import(talk: &Printer, file: &Path, options: &ImportOptions) -> Result<()
     read.files.insert(GRAPH.to_owned(), written::graph_json(row, ways, 4).into_bytes());
     read.files.insert(EXTRA.to_owned(), extra.into_bytes());
     let location = socrates_maps::parse(&read.files, &name).map_err(|faults| {
-        Complaint::faults(
+        Diagnostic::faults(
             format!("`{}` makes no location", file.display()),
             &faults,
             "correct the file, or draw its map with `socrates map draw` and see; `socrates explain CODE` says what to do",
@@ -184,19 +184,19 @@ pub fn import(talk: &Printer, file: &Path, options: &ImportOptions) -> Result<()
     Ok(())
 }
 
-fn unusable(file: &Path, why: &Unusable) -> Complaint {
-    Complaint::input(format!("`{}` cannot be used: {why}", file.display()), why.hint.clone())
+fn unusable(file: &Path, why: &Unusable) -> Diagnostic {
+    Diagnostic::input(format!("`{}` cannot be used: {why}", file.display()), why.hint.clone())
 }
 
 /// A graph that lies on a map of its own.
-fn on_map(file: &Path, text: &str, format: GraphFormat, options: &ImportOptions) -> Result<Read, Complaint> {
+fn on_map(file: &Path, text: &str, format: GraphFormat, options: &ImportOptions) -> Result<Read, Diagnostic> {
     let Some(map) = &options.map else {
         let message = format!("a graph of `{}` has no walls of its own", format.name());
-        return Err(Complaint::input(message, "name the map on which it was drawn: `--map map.yaml`"));
+        return Err(Diagnostic::input(message, "name the map on which it was drawn: `--map map.yaml`"));
     };
     let map = raw_map::given(map)?;
     let (raw, files) = socrates_maps::load_raw(&map).map_err(|faults| {
-        Complaint::faults(
+        Diagnostic::faults(
             format!("the map `{}` is not usable", map.display()),
             &faults,
             "`socrates explain CODE` says what to do",
@@ -211,7 +211,7 @@ fn on_map(file: &Path, text: &str, format: GraphFormat, options: &ImportOptions)
 }
 
 /// A level of a building. Where it has no lanes, its places are found on its map.
-fn level(file: &Path, text: &str, options: &ImportOptions) -> Result<Read, Complaint> {
+fn level(file: &Path, text: &str, options: &ImportOptions) -> Result<Read, Diagnostic> {
     let building = rmf::Building::read(text).map_err(|why| unusable(file, &why))?;
     let levels = building.levels();
     let level = match (options.level.as_deref(), levels.as_slice()) {
@@ -219,14 +219,14 @@ fn level(file: &Path, text: &str, options: &ImportOptions) -> Result<Read, Compl
         (None, [only]) => only,
         (None, several) => {
             let message = format!("`{}` has {} levels: {}", file.display(), several.len(), several.join(", "));
-            return Err(Complaint::input(message, "each makes a location of its own: choose one with `--level NAME`"));
+            return Err(Diagnostic::input(message, "each makes a location of its own: choose one with `--level NAME`"));
         }
     };
     let (mut floor, losses) = building.level(level).map_err(|why| unusable(file, &why))?;
     if floor.graph.edges.is_empty() {
         let found = socrates_annotate::annotate(&floor.grid, &socrates_annotate::Options::default());
         let found = found.map_err(|faults| {
-            Complaint::faults(
+            Diagnostic::faults(
                 format!("the level `{level}` has no lanes, and nothing was found on its map"),
                 &faults,
                 "draw lanes in the building's editor",
@@ -236,7 +236,7 @@ fn level(file: &Path, text: &str, options: &ImportOptions) -> Result<Read, Compl
         floor.graph.edges = found.graph.edges().to_vec();
     }
     let files = written::map_files(&floor.grid).map_err(|why| {
-        Complaint::input(format!("the map of the level `{level}` cannot be written: {why}"), "choose another level")
+        Diagnostic::input(format!("the map of the level `{level}` cannot be written: {why}"), "choose another level")
     })?;
     let description =
         if levels.len() > 1 { format!("{}, level {level}", building.name) } else { building.name.clone() };
@@ -281,14 +281,14 @@ fn fitting(read: &mut Read) {
 ///
 /// The area is that of a node: its whole room or car where it lies in one, else the node alone; several are joined by commas.
 /// A shipped location is copied into `out` first.
-pub fn name(talk: &Printer, location: &str, area: &str, name: &str, out: Option<&Path>) -> Result<(), Complaint> {
+pub fn name(talk: &Printer, location: &str, area: &str, name: &str, out: Option<&Path>) -> Result<(), Diagnostic> {
     let (loaded, mut files) = load_location(location, Path::new("."))?;
     let inside = socrates_maps::openings::Enclosures::of(&loaded);
     let mut nodes = Vec::new();
     for id in area.split(',').map(str::trim) {
         let Some(node) = loaded.graph.nodes().iter().find(|node| node.id.as_str() == id) else {
             let near: Vec<&str> = loaded.graph.nodes().iter().map(|node| node.id.as_str()).take(12).collect();
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{location}` has no node `{id}`"),
                 format!(
                     "`socrates map draw {}` shows all ids: {} …",
@@ -312,7 +312,7 @@ pub fn name(talk: &Printer, location: &str, area: &str, name: &str, out: Option<
         (None, false) => PathBuf::from(location),
         (None, true) => {
             let message = format!("`{location}` is no folder with a scene graph of your own");
-            return Err(Complaint::input(message, "name a folder for the copy: `--out my-location`"));
+            return Err(Diagnostic::input(message, "name a folder for the copy: `--out my-location`"));
         }
     };
     let before = files.get(EXTRA).map(|bytes| String::from_utf8_lossy(bytes).into_owned()).unwrap_or_default();
@@ -322,7 +322,11 @@ pub fn name(talk: &Printer, location: &str, area: &str, name: &str, out: Option<
         format!("{before}{ends}{}", written::names_toml(std::slice::from_ref(&named))).into_bytes(),
     );
     let checked = socrates_maps::parse(&files, &loaded.name).map_err(|faults| {
-        Complaint::faults(format!("`{name}` cannot be given"), &faults, "choose another name, or correct location.toml")
+        Diagnostic::faults(
+            format!("`{name}` cannot be given"),
+            &faults,
+            "choose another name, or correct location.toml",
+        )
     })?;
     map::folder(&files, &out)?;
     let ids: Vec<&str> = named.nodes.iter().map(socrates_model::NodeId::as_str).collect();

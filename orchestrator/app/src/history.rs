@@ -8,7 +8,7 @@ use socrates_orchestrator::{Attempt, Snapshot};
 
 /// One revision of one job.
 #[derive(Debug, Clone)]
-pub(crate) struct PastJob {
+pub struct PastJob {
     /// Which.
     pub(crate) key: JobKey,
     /// How it ended, in lower case.
@@ -20,7 +20,7 @@ pub(crate) struct PastJob {
     /// Reasons for which this revision was made.
     pub(crate) sent_back: Vec<Fault>,
     /// Attempts in order.
-    pub(crate) attempts: Vec<Attempt>,
+    pub attempts: Vec<Attempt>,
     /// What a scoring job found.
     pub(crate) verdict: Option<socrates_model::Verdict>,
     /// The stage that a scoring job sends back.
@@ -35,7 +35,7 @@ pub(crate) struct PastJob {
 
 /// Everything that was tried, by scenario.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct History {
+pub struct History {
     jobs: BTreeMap<ScenarioId, Vec<PastJob>>,
     /// Scenarios in order of submission, and how each ended; none while it is not done.
     pub(crate) ends: Vec<(ScenarioId, Option<ScenarioEnd>)>,
@@ -77,7 +77,8 @@ impl History {
     }
 
     /// What was tried for a scenario, in pipeline order.
-    pub(crate) fn of(&self, scenario: &ScenarioId) -> &[PastJob] {
+    #[must_use]
+    pub fn of(&self, scenario: &ScenarioId) -> &[PastJob] {
         self.jobs.get(scenario).map_or(&[], Vec::as_slice)
     }
 }

@@ -4,30 +4,38 @@ use socrates_author::{Asking, AuthorContext, Question, Written};
 use socrates_model::driver::Commands;
 use socrates_model::job::Stage;
 use socrates_model::{
-    Behaviors, Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request, Run, RunId,
+    Behaviors, Fault, FaultCode, Keeper, Location, Onlooker, Paths, Proposal, Reading, Recording, Report, Request, Run,
+    RunId,
 };
 use socrates_scoring::Evidence;
+use socrates_simulation::Driven;
 use socrates_simulation::driving::{Nobody, Outside};
-use socrates_simulation::{Driven, Keeper, Onlooker};
 
 /// Asks per stage, as many as `run` allows.
 const ASKS: u32 = 4;
 
 /// What the authoring stages make of a scenario.
 #[derive(Debug, Clone)]
-pub(crate) struct Made {
-    pub(crate) proposal: Proposal,
-    pub(crate) paths: Paths,
-    pub(crate) behaviors: Behaviors,
+pub struct Made {
+    /// The proposal.
+    pub proposal: Proposal,
+    /// The paths.
+    pub paths: Paths,
+    /// The behaviors.
+    pub behaviors: Behaviors,
 }
 
 /// A scenario that was made and judged.
 #[derive(Debug)]
-pub(crate) struct Played {
-    pub(crate) proposal: Proposal,
-    pub(crate) paths: Paths,
-    pub(crate) report: Report,
-    pub(crate) recording: Recording,
+pub struct Played {
+    /// The proposal.
+    pub proposal: Proposal,
+    /// The paths.
+    pub paths: Paths,
+    /// The report.
+    pub report: Report,
+    /// The recording.
+    pub recording: Recording,
 }
 
 /// Writes a scenario with the offline author, runs it with the reference robot and judges it. The seed is that of the author
@@ -35,7 +43,7 @@ pub(crate) struct Played {
 ///
 /// # Errors
 /// The faults of the last answer that was refused, or of the run.
-pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> Result<Played, Vec<Fault>> {
+pub async fn play(request: &Request, location: &Location, seed: u64) -> Result<Played, Vec<Fault>> {
     let reading = socrates_offline::read(request, location);
     let question = |stage, proposal| Question {
         stage,
@@ -131,7 +139,7 @@ async fn ask(mut question: Question) -> Result<Written, Vec<Fault>> {
 ///
 /// # Errors
 /// What is wrong with its parts or its planner.
-pub(crate) fn simulate(
+pub fn simulate(
     request: &Request,
     location: &Location,
     made: Made,
@@ -164,7 +172,8 @@ pub(crate) fn simulate_into(
 }
 
 /// All that the judge may look at in a run of the reference robot.
-pub(crate) fn evidence<'a>(
+#[must_use]
+pub fn evidence<'a>(
     request: &'a Request,
     reading: &'a Reading,
     location: &'a Location,

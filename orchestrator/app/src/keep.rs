@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 use socrates_model::Verdict;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Libraries of more scenarios than this have packed bundles, unless something else is asked for: folders are nice to look into, and a
 /// hundred thousand of them are two million files.
@@ -74,9 +74,9 @@ impl Keep {
 ///
 /// # Errors
 /// Something else is asked for than was fixed: what was made would have to be made again.
-pub(crate) fn agreed(root: &Path, fixed: Option<Keep>, asked: Option<Keep>) -> Result<Option<Keep>, Complaint> {
+pub(crate) fn agreed(root: &Path, fixed: Option<Keep>, asked: Option<Keep>) -> Result<Option<Keep>, Diagnostic> {
     match (fixed, asked) {
-        (Some(fixed), Some(asked)) if fixed != asked => Err(Complaint::input(
+        (Some(fixed), Some(asked)) if fixed != asked => Err(Diagnostic::input(
             format!(
                 "`{}` was begun with `--keep {}`, and `--keep {}` does not change what lies in it",
                 root.display(),

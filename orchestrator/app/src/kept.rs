@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use socrates_draw::BatchRow;
 use socrates_model::{Digest, Likeness, Location, Report, ScenarioId, Verdict};
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::{files, index};
 
 /// The file in a library.
@@ -86,7 +86,7 @@ impl Lines {
     }
 
     /// Takes over what a finished library has, so that it is not made again.
-    pub(crate) fn adopt(&self, library: &Path) -> Result<(), Complaint> {
+    pub(crate) fn adopt(&self, library: &Path) -> Result<(), Diagnostic> {
         if library.join(FILE).is_file() {
             for (kept, location) in Reader::open(library)?.all()? {
                 self.put(&kept, &location)?;
@@ -96,7 +96,7 @@ impl Lines {
     }
 
     /// Writes the line of a scenario. One that a kill cut short cannot be unpacked: it is not there.
-    pub(crate) fn put(&self, kept: &Kept, location: &Location) -> Result<(), Complaint> {
+    pub(crate) fn put(&self, kept: &Kept, location: &Location) -> Result<(), Diagnostic> {
         let place = self.path(&format!("location-{}", kept.location));
         if !place.is_file() {
             write(&place, &Line::Location(Box::new(location.clone())))?;
@@ -121,15 +121,15 @@ impl Lines {
         &self,
         library: &Path,
         scenarios: impl Iterator<Item = &'a ScenarioId>,
-    ) -> Result<(), Complaint> {
+    ) -> Result<(), Diagnostic> {
         let (file, beside) = (library.join(FILE), self.path("all"));
         let cannot = |why: std::io::Error| {
-            Complaint::input(format!("cannot write `{}`: {why}", file.display()), "--out chooses another folder")
+            Diagnostic::input(format!("cannot write `{}`: {why}", file.display()), "--out chooses another folder")
         };
         let mut placed = BTreeSet::new();
         let mut all: Option<std::fs::File> = None;
         for scenario in scenarios {
-            let lost = || Complaint::resumes(format!("what was kept of `{scenario}` is gone"));
+            let lost = || Diagnostic::resumes(format!("what was kept of `{scenario}` is gone"));
             let path = self.path(&format!("scenario-{scenario}"));
             let Some(Line::Scenario(kept)) = read(&path) else { return Err(lost()) };
             let mut packed = Vec::new();
@@ -159,11 +159,11 @@ impl Lines {
     }
 }
 
-fn ours(what: String) -> Complaint {
-    Complaint::input(what, "").with_code(Code::Ours)
+fn ours(what: String) -> Diagnostic {
+    Diagnostic::input(what, "").with_code(Code::Ours)
 }
 
-fn write(path: &Path, line: &Line) -> Result<(), Complaint> {
+fn write(path: &Path, line: &Line) -> Result<(), Diagnostic> {
     let mut text = serde_json::to_vec(line).map_err(|why| ours(why.to_string()))?;
     text.push(b'\n');
     let packed = zstd::encode_all(text.as_slice(), LEVEL).map_err(|why| ours(why.to_string()))?;
@@ -188,9 +188,9 @@ impl Reader {
     ///
     /// # Errors
     /// Where there is none, or it is no packed file.
-    pub(crate) fn open(library: &Path) -> Result<Self, Complaint> {
+    pub(crate) fn open(library: &Path) -> Result<Self, Diagnostic> {
         let path = library.join(FILE);
-        let bad = |why: std::io::Error| Complaint::input(format!("cannot read `{}`: {why}", path.display()), HINT);
+        let bad = |why: std::io::Error| Diagnostic::input(format!("cannot read `{}`: {why}", path.display()), HINT);
         let lines = zstd::Decoder::new(std::fs::File::open(&path).map_err(bad)?).map_err(bad)?;
         Ok(Self { path, lines: BufReader::new(lines), number: 0, locations: BTreeMap::new() })
     }
@@ -199,11 +199,11 @@ impl Reader {
     ///
     /// # Errors
     /// A line that is damaged or cannot be understood, by its number.
-    pub(crate) fn next(&mut self) -> Result<Option<(Kept, Arc<Location>)>, Complaint> {
+    pub(crate) fn next(&mut self) -> Result<Option<(Kept, Arc<Location>)>, Diagnostic> {
         loop {
             self.number += 1;
             let shown = format!("`{}` line {}", self.path.display(), self.number);
-            let bad = |why: String| Complaint::input(format!("{shown}: {why}"), HINT);
+            let bad = |why: String| Diagnostic::input(format!("{shown}: {why}"), HINT);
             let mut text = Vec::new();
             let most = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
             std::io::Read::take(&mut self.lines, most)
@@ -226,7 +226,7 @@ impl Reader {
     }
 
     /// All that follow.
-    pub(crate) fn all(mut self) -> Result<Vec<(Kept, Arc<Location>)>, Complaint> {
+    pub(crate) fn all(mut self) -> Result<Vec<(Kept, Arc<Location>)>, Diagnostic> {
         let mut all = Vec::new();
         while let Some(one) = self.next()? {
             all.push(one);
@@ -236,7 +236,7 @@ impl Reader {
 }
 
 /// Names of the scenarios that a library keeps without their bundles; none where it has no such file.
-pub(crate) fn names(library: &Path) -> Result<BTreeSet<String>, Complaint> {
+pub(crate) fn names(library: &Path) -> Result<BTreeSet<String>, Diagnostic> {
     let mut names = BTreeSet::new();
     if library.join(FILE).is_file() {
         let mut reader = Reader::open(library)?;

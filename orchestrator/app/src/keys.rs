@@ -9,7 +9,7 @@ use socrates_link::rules::Role;
 use socrates_link::{Credentials, KeysWish, LinkError, SECURE, keys_of, wall_ms};
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::folder::write_private;
 use crate::output::Printer;
 use crate::words::plural;
@@ -51,19 +51,19 @@ const fn purpose(role: Role) -> &'static str {
 }
 
 /// Makes the keys of a deployment.
-pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Complaint> {
+pub fn make(talk: &Printer, options: &KeysOptions) -> Result<(), Diagnostic> {
     let wish = KeysWish { hosts: options.hosts.clone(), days: options.days, now_s: wall_ms() / 1000 };
     let keys = keys_of(&wish).map_err(|why| told(why, "keys cannot be made", "`socrates cluster keys --help`"))?;
     let dir = &options.dir;
     let there = keys.iter().map(|keys| dir.join(keys.role.name())).find(|folder| folder.exists());
     if let (Some(folder), false) = (there, options.force) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("there are keys in `{}`", folder.display()),
             "name another folder; --force makes all of them anew, and those that were handed out are then refused",
         ));
     }
     let cannot = |path: &Path, why: std::io::Error| {
-        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "name a folder of your own")
+        Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "name a folder of your own")
     };
     private_folder(dir).map_err(|why| cannot(dir, why))?;
     for of_role in &keys {
@@ -106,7 +106,7 @@ fn private_folder(folder: &Path) -> std::io::Result<()> {
 }
 
 /// The keys of the configuration for an endpoint that takes them, of this role or the orchestrator's; none for other endpoints.
-pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<Credentials>, Complaint> {
+pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<Credentials>, Diagnostic> {
     let folder = config.text(SETTING);
     if folder.is_empty() || !endpoint.starts_with(SECURE) {
         return Ok(None);
@@ -116,7 +116,7 @@ pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<C
     // What a role may not do is dropped without a word: said here, where it can be said.
     if keys.role() != role && keys.role() != Role::Orchestrator {
         let what = format!("the keys in `{folder}` are of the role `{}`, which may not do this", keys.role());
-        return Err(Complaint::input(what, format!("--keys with the folder of the role `{role}`")));
+        return Err(Diagnostic::input(what, format!("--keys with the folder of the role `{role}`")));
     }
     let days = keys.days_left();
     if days < FEW_DAYS {
@@ -130,11 +130,11 @@ pub(crate) fn of(config: &Config, role: Role, endpoint: &str) -> Result<Option<C
 }
 
 /// What the bus says, for a person: keys bring their own hint.
-pub(crate) fn told(why: LinkError, what: &str, hint: &str) -> Complaint {
+pub(crate) fn told(why: LinkError, what: &str, hint: &str) -> Diagnostic {
     if let LinkError::Keys { what: wrong, hint } = &why {
-        return Complaint::input(format!("{what}: {wrong}"), hint.as_str());
+        return Diagnostic::input(format!("{what}: {wrong}"), hint.as_str());
     }
-    Complaint::input(format!("{what}: {why}"), hint)
+    Diagnostic::input(format!("{what}: {why}"), hint)
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub use self::observed::{ObservedOptions, observed};
 pub use self::opinion::{OpinionOptions, opinion};
 use crate::batch;
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 use crate::progress::Progress;
 
@@ -60,7 +60,7 @@ pub struct PageOptions {
 }
 
 /// Does `labels page`.
-pub fn page(talk: &Printer, options: &PageOptions) -> Result<(), Complaint> {
+pub fn page(talk: &Printer, options: &PageOptions) -> Result<(), Diagnostic> {
     if let Some(blind) = &options.blind {
         return blind::page(talk, options, blind);
     }
@@ -93,7 +93,7 @@ pub fn page(talk: &Printer, options: &PageOptions) -> Result<(), Complaint> {
     }
     drop(progress);
     if page.is_empty() {
-        return Err(Complaint::input("the bundles hold no run with a robot", "`socrates run` makes one"));
+        return Err(Diagnostic::input("the bundles hold no run with a robot", "`socrates run` makes one"));
     }
     crate::files::write(&options.out, page.html(&options.title).as_bytes())?;
     talk.line(&format!("wrote      {} · {} runs", options.out.display(), page.len()));
@@ -101,8 +101,8 @@ pub fn page(talk: &Printer, options: &PageOptions) -> Result<(), Complaint> {
     Ok(())
 }
 
-fn too_many(runs: usize) -> Complaint {
-    Complaint::input(
+fn too_many(runs: usize) -> Diagnostic {
+    Diagnostic::input(
         format!("`{runs}` runs are too many for one page"),
         format!("at most {MOST}; --first takes one run of each bundle, or name fewer bundles"),
     )
@@ -178,7 +178,7 @@ pub(crate) fn shown(value: Option<f64>) -> String {
 
 /// What the runs of each of these bundles are called where all of them are looked at together: by their own names where no other
 /// run has the same, else with as much of the folder before it as tells them apart, `library-2/x-1:x-1.reference-1`.
-pub(crate) fn names(dirs: &[PathBuf]) -> Result<Vec<BTreeMap<String, String>>, Complaint> {
+pub(crate) fn names(dirs: &[PathBuf]) -> Result<Vec<BTreeMap<String, String>>, Diagnostic> {
     let mut runs: Vec<Vec<String>> = Vec::new();
     for dir in dirs {
         let manifest = bundle::manifest(dir).ok_or_else(|| batch::none(dir))?;
@@ -226,7 +226,7 @@ fn apart(folders: &[Vec<String>], runs: &[Vec<String>]) -> Vec<BTreeMap<String, 
 }
 
 /// Every bundle that is meant: a bundle itself, or those right below a folder.
-pub(crate) fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
+pub(crate) fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Diagnostic> {
     let mut found = Vec::new();
     for dir in named {
         if bundle::manifest(dir).is_some() {

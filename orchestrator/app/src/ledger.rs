@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use socrates_author::Answer;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 
 /// Its name in the folder of what was asked.
@@ -39,7 +39,7 @@ impl Ledger {
     }
 
     /// Writes the books into a folder.
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), Complaint> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<(), Diagnostic> {
         let text = json!({"author": self.author, "jobs": self.jobs}).to_string();
         files::write(&folder.join(FILE), (text + "\n").as_bytes())
     }
@@ -51,8 +51,8 @@ pub(crate) fn in_folder(folder: &Path) -> Option<PathBuf> {
 }
 
 /// Reads books, in the shape of a bundle's provenance.
-pub(crate) fn read(file: &Path) -> Result<Value, Complaint> {
+pub(crate) fn read(file: &Path) -> Result<Value, Diagnostic> {
     let hint = "take the file as the program wrote it";
     let bytes = files::bytes(file, MAX_BYTES, hint)?;
-    serde_json::from_slice(&bytes).map_err(|why| Complaint::input(format!("`{}`: {why}", file.display()), hint))
+    serde_json::from_slice(&bytes).map_err(|why| Diagnostic::input(format!("`{}`: {why}", file.display()), hint))
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::coverage::Coverage;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
 use crate::output::Printer;
 use crate::query;
@@ -21,10 +21,10 @@ pub struct CoverageOptions {
 ///
 /// # Errors
 /// A folder without a table, a table that cannot be read, a file that cannot be written or is no `.csv`.
-pub fn coverage(talk: &Printer, options: &CoverageOptions) -> Result<Code, Complaint> {
+pub fn coverage(talk: &Printer, options: &CoverageOptions) -> Result<Code, Diagnostic> {
     if let Some(out) = options.out.as_deref().filter(|out| out.extension().is_none_or(|ending| ending != "csv")) {
         let what = format!("cannot write `{}`: coverage is written as CSV", out.display());
-        return Err(Complaint::input(what, "--out coverage.csv; `--format json` prints it for programs"));
+        return Err(Diagnostic::input(what, "--out coverage.csv; `--format json` prints it for programs"));
     }
     let table = query::table(&options.library)?;
     let coverage = Coverage::of(&table);
@@ -42,7 +42,7 @@ pub fn coverage(talk: &Printer, options: &CoverageOptions) -> Result<Code, Compl
     Ok(Code::Ok)
 }
 
-fn write(talk: &Printer, out: &Path, coverage: &Coverage) -> Result<(), Complaint> {
+fn write(talk: &Printer, out: &Path, coverage: &Coverage) -> Result<(), Diagnostic> {
     files::write(out, coverage.csv().as_bytes())?;
     talk.line("");
     talk.line(&format!("wrote      {}", out.display()));

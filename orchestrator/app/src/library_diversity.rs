@@ -18,7 +18,7 @@ use socrates_stats::{median, quantile, time_warp};
 use socrates_stream::csv::joined;
 
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::labels::folders;
 use crate::output::Printer;
@@ -66,10 +66,10 @@ struct Pair {
 /// # Errors
 /// A folder without bundles, a bundle that cannot be read, fewer than two scenarios on any location, a file that cannot be written or
 /// is no `.csv`.
-pub fn diversity(talk: &Printer, options: &DiversityOptions) -> Result<(), Complaint> {
+pub fn diversity(talk: &Printer, options: &DiversityOptions) -> Result<(), Diagnostic> {
     if let Some(out) = options.out.as_deref().filter(|out| out.extension().is_none_or(|ending| ending != "csv")) {
         let what = format!("cannot write `{}`: pairs are written as CSV", out.display());
-        return Err(Complaint::input(what, "--out pairs.csv; `--format json` prints the summary for programs"));
+        return Err(Diagnostic::input(what, "--out pairs.csv; `--format json` prints the summary for programs"));
     }
     let (all, found) = scenarios(talk, options)?;
     let mut places: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
@@ -79,7 +79,7 @@ pub fn diversity(talk: &Printer, options: &DiversityOptions) -> Result<(), Compl
     let pairs: BTreeMap<&str, Vec<Pair>> =
         places.iter().map(|(place, of)| (*place, pairs(&all, of))).filter(|(_, pairs)| !pairs.is_empty()).collect();
     if pairs.is_empty() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("of `{}` scenarios no two are on one location: there is no pair to compare", all.len()),
             "name a library with two scenarios of a location, or several libraries",
         ));
@@ -100,10 +100,10 @@ pub fn diversity(talk: &Printer, options: &DiversityOptions) -> Result<(), Compl
 }
 
 /// The scenarios that are compared, and how many there are.
-fn scenarios(talk: &Printer, options: &DiversityOptions) -> Result<(Vec<One>, usize), Complaint> {
+fn scenarios(talk: &Printer, options: &DiversityOptions) -> Result<(Vec<One>, usize), Diagnostic> {
     let dirs = folders(&options.what)?;
     if options.most < 2 {
-        return Err(Complaint::input(format!("`--most {}` leaves no pair", options.most), "2 or more; default 200"));
+        return Err(Diagnostic::input(format!("`--most {}` leaves no pair", options.most), "2 or more; default 200"));
     }
     let kept = dirs.len().min(options.most);
     let mut progress = Progress::new(*talk, "reading", kept);

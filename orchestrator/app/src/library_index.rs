@@ -9,7 +9,7 @@ use socrates_model::likeness::Kind;
 use socrates_model::{Digest, Likeness, Reading, ScenarioEnd, ScenarioId, Verdict};
 
 use crate::bundle;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::keep::Keep;
 use crate::shard::Shard;
 
@@ -87,21 +87,21 @@ pub(crate) fn read(root: &Path) -> Option<Library> {
 ///
 /// # Errors
 /// A list that is gone or cannot be understood, with file and line.
-pub(crate) fn read_whole(root: &Path) -> Result<Library, Complaint> {
+pub(crate) fn read_whole(root: &Path) -> Result<Library, Diagnostic> {
     let path = root.join(FILE);
     let hint = "the list was changed by hand or is damaged: make the library again in an empty folder";
-    let bad = |why: String| Complaint::input(format!("`{}`: {why}", path.display()), hint);
+    let bad = |why: String| Diagnostic::input(format!("`{}`: {why}", path.display()), hint);
     let text = std::fs::read_to_string(&path).map_err(|why| bad(why.to_string()))?;
     serde_json::from_str(&text).map_err(|why| bad(why.to_string()))
 }
 
 /// Writes the list.
-pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
+pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Diagnostic> {
     let path = root.join(FILE);
     let text = serde_json::to_string_pretty(library)
-        .map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+        .map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))?;
     std::fs::write(&path, text).map_err(|why| {
-        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+        Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
     })
 }
 

@@ -21,7 +21,7 @@ use socrates_gateway::guard::Rules;
 use socrates_gateway::server;
 use tokio::net::TcpListener;
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::view::new_token;
 
 /// Connections at once: a page has a few, and so has each program that asks.
@@ -63,15 +63,15 @@ impl Loopback {
     /// Takes a port of this machine; none for any that is free.
     ///
     /// # Errors
-    /// A [`Complaint`] where the port is taken, or no token can be drawn.
-    pub(crate) async fn bind(port: Option<u16>) -> Result<Self, Complaint> {
+    /// A [`Diagnostic`] where the port is taken, or no token can be drawn.
+    pub(crate) async fn bind(port: Option<u16>) -> Result<Self, Diagnostic> {
         let port = port.unwrap_or(0);
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await.map_err(|why| {
             let hint = "name another with `--port`, or leave it out for any that is free";
-            Complaint::input(format!("cannot listen on port {port} of this machine: {why}"), hint)
+            Diagnostic::input(format!("cannot listen on port {port} of this machine: {why}"), hint)
         })?;
         let address = listener.local_addr();
-        let address = address.map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+        let address = address.map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))?;
         let token = new_token()?;
         let rules = Arc::new(Rules { token: Some(token.clone()), most: MOST, ..Rules::default() });
         Ok(Self { listener, address, token, rules })

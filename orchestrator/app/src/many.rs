@@ -9,7 +9,7 @@ use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 
 use crate::bundler::{Bundled, Bundler};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::keep::{self, Keep};
 use crate::kept::Lines;
 use crate::output::Printer;
@@ -40,7 +40,7 @@ pub(crate) async fn batch(
     options: &RunOptions,
     mut prepared: Vec<Prepared>,
     refused: &[Refused],
-) -> Result<Library, Complaint> {
+) -> Result<Library, Diagnostic> {
     told_apart(&mut prepared);
     let base = base(options);
     let (wish, part) = wish(&prepared, options);
@@ -164,7 +164,7 @@ pub(crate) fn write(
     work: &Path,
     mut list: library_index::Library,
     made: Vec<Ended>,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let mut cards = BTreeMap::new();
     let mut repeats = library_index::Repeats::default();
     for Ended { scenario, request, what } in made {
@@ -203,9 +203,9 @@ pub(crate) fn write(
 }
 
 /// Prints what a library holds.
-pub(crate) fn finish(talk: &Printer, require: Require, root: &Path, refused: &[Refused]) -> Result<Code, Complaint> {
+pub(crate) fn finish(talk: &Printer, require: Require, root: &Path, refused: &[Refused]) -> Result<Code, Diagnostic> {
     let library = library_index::read(root).ok_or_else(|| {
-        Complaint::input(format!("`{}` has no {}", root.display(), library_index::FILE), "run the same command again")
+        Diagnostic::input(format!("`{}` has no {}", root.display(), library_index::FILE), "run the same command again")
     })?;
     let mut verdicts = BTreeMap::<ScenarioEnd, u64>::new();
     library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict).or_default() += 1);

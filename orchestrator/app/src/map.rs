@@ -9,7 +9,7 @@ use socrates_draw::MapNote;
 use socrates_maps::random::Kind;
 use socrates_model::{Fault, Location, Point};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 use crate::prepare::{load_location, shadowed};
@@ -20,7 +20,7 @@ use crate::words::plural;
 const MAX_PLAN_BYTES: u64 = 4 * 1024 * 1024;
 
 /// Lists the shipped locations and their requests.
-pub fn list(talk: &Printer) -> Result<(), Complaint> {
+pub fn list(talk: &Printer) -> Result<(), Diagnostic> {
     let mut all = Vec::new();
     for name in socrates_maps::shipped::names() {
         let (location, _) = load_location(name, Path::new("."))?;
@@ -42,7 +42,7 @@ fn told_shadow(talk: &Printer, name: &str) {
 }
 
 /// Says everything that is wrong with a location.
-pub fn check(talk: &Printer, name: &str) -> Result<(), Complaint> {
+pub fn check(talk: &Printer, name: &str) -> Result<(), Diagnostic> {
     told_shadow(talk, name);
     let (location, _) = load_location(name, Path::new("."))?;
     let faults = socrates_maps::check(&location);
@@ -54,7 +54,7 @@ pub fn check(talk: &Printer, name: &str) -> Result<(), Complaint> {
         talk.line(&format!("warning    {fault}"));
     }
     if !hard.is_empty() {
-        return Err(Complaint::faults(
+        return Err(Diagnostic::faults(
             format!("the location `{name}` has {}", plural(hard.len(), "fault")),
             &hard,
             "`socrates explain CODE` says what to do",
@@ -75,7 +75,7 @@ pub fn check(talk: &Printer, name: &str) -> Result<(), Complaint> {
 }
 
 /// Draws a location with its node ids; a map without a scene graph with what is found on it, and with remarks.
-pub fn draw(talk: &Printer, name: &str, out: &Path) -> Result<(), Complaint> {
+pub fn draw(talk: &Printer, name: &str, out: &Path) -> Result<(), Diagnostic> {
     let (location, notes) = match raw_map::file_of(Path::new(name)) {
         Some(file) => {
             let map = raw_map::annotated(&file, &Options::default())?;
@@ -91,16 +91,16 @@ pub fn draw(talk: &Printer, name: &str, out: &Path) -> Result<(), Complaint> {
 }
 
 /// Writes the picture of a location, as SVG or PNG.
-fn picture(location: &Location, notes: &[MapNote], out: &Path) -> Result<(), Complaint> {
+fn picture(location: &Location, notes: &[MapNote], out: &Path) -> Result<(), Diagnostic> {
     let svg = socrates_draw::annotated_map_with(location, notes);
     let bytes = if out.extension().is_some_and(|ext| ext == "svg") {
         svg.into_bytes()
     } else {
         socrates_draw::png_from_svg(&svg, 1.0)
-            .map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
+            .map_err(|why| Diagnostic::input(why.to_string(), "choose an .svg file instead"))?
     };
     std::fs::write(out, bytes)
-        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))
+        .map_err(|why| Diagnostic::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))
 }
 
 /// What a person says about a map that is annotated.
@@ -117,7 +117,7 @@ pub struct AnnotateOptions {
 }
 
 /// Finds the places of a map without a scene graph, and writes a location folder with a picture.
-pub fn annotate(talk: &Printer, given: &Path, options: &AnnotateOptions) -> Result<(), Complaint> {
+pub fn annotate(talk: &Printer, given: &Path, options: &AnnotateOptions) -> Result<(), Diagnostic> {
     let file = raw_map::given(given)?;
     let said = Options {
         keep: options.keep.as_deref().map(|text| point("--keep", text)).transpose()?,
@@ -130,7 +130,7 @@ pub fn annotate(talk: &Printer, given: &Path, options: &AnnotateOptions) -> Resu
     let map = raw_map::annotated(&file, &said)?;
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-annotated", map.location.name)));
     if out.join(socrates_maps::GRAPH).exists() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` has a scene graph already, which is left as it is", out.display()),
             "name another folder with `--out`, or remove its scene_graph.json",
         ));
@@ -159,11 +159,11 @@ pub fn annotate(talk: &Printer, given: &Path, options: &AnnotateOptions) -> Resu
 }
 
 /// `x,y` in the map frame, m.
-fn point(option: &str, text: &str) -> Result<Point, Complaint> {
+fn point(option: &str, text: &str) -> Result<Point, Diagnostic> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match numbers.as_slice() {
         [x, y] if x.is_finite() && y.is_finite() && text.split(',').count() == 2 => Ok(Point::new(*x, *y)),
-        _ => Err(Complaint::input(
+        _ => Err(Diagnostic::input(
             format!("`{option} {text}` is no point"),
             format!("write x,y in the map frame, m: {option} 4.5,-2"),
         )),
@@ -171,7 +171,7 @@ fn point(option: &str, text: &str) -> Result<Point, Complaint> {
 }
 
 /// Says how near the second annotation of a map comes to the first.
-pub fn score(talk: &Printer, first: &str, second: &str) -> Result<(), Complaint> {
+pub fn score(talk: &Printer, first: &str, second: &str) -> Result<(), Diagnostic> {
     let load = |name: &str| {
         told_shadow(talk, name);
         load_location(name, Path::new(".")).map(|(location, _)| location)
@@ -214,28 +214,28 @@ pub fn score(talk: &Printer, first: &str, second: &str) -> Result<(), Complaint>
 }
 
 /// The files of a location that a floor plan describes.
-pub(crate) fn generated(plan: &Path) -> Result<BTreeMap<String, Vec<u8>>, Complaint> {
+pub fn generated(plan: &Path) -> Result<BTreeMap<String, Vec<u8>>, Diagnostic> {
     let hint = "see maps/README.md for the form of a floor plan";
     let text = files::text(plan, MAX_PLAN_BYTES, hint)?;
     socrates_maps::generate(&text).map_err(|faults| {
-        Complaint::faults(format!("the floor plan `{}` is not usable", plan.display()), &faults, hint)
+        Diagnostic::faults(format!("the floor plan `{}` is not usable", plan.display()), &faults, hint)
     })
 }
 
 /// Makes a location folder from a floor plan; files of a folder that is there are written anew.
-pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Complaint> {
+pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Diagnostic> {
     write(talk, &generated(plan)?, out)
 }
 
 /// Whether a folder can be written: one that holds anything, or a file in its place, is left as it is.
-pub(crate) fn is_free(out: &Path) -> Result<(), Complaint> {
+pub(crate) fn is_free(out: &Path) -> Result<(), Diagnostic> {
     let taken = match std::fs::read_dir(out) {
         Ok(mut entries) => entries.next().is_some(),
         Err(why) => why.kind() != std::io::ErrorKind::NotFound,
     };
     if taken {
         let message = format!("`{}` is there already and is not an empty folder", out.display());
-        return Err(Complaint::input(message, "name another folder with `--out`, or remove it"));
+        return Err(Diagnostic::input(message, "name another folder with `--out`, or remove it"));
     }
     Ok(())
 }
@@ -243,7 +243,7 @@ pub(crate) fn is_free(out: &Path) -> Result<(), Complaint> {
 /// Makes a location folder from a floor plan that is drawn by a seed, with the plan in it.
 ///
 /// Without `out` the folder is called by kind and seed. A folder that holds anything already is left as it is.
-pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Result<(), Complaint> {
+pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Result<(), Diagnostic> {
     let kind = self::kind(kind)?;
     let out = out.map_or_else(|| PathBuf::from(socrates_maps::random::name(seed, kind)), Path::to_path_buf);
     is_free(&out)?;
@@ -252,22 +252,22 @@ pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Resu
 }
 
 /// The kind of random worlds of this name.
-pub(crate) fn kind(name: &str) -> Result<Kind, Complaint> {
+pub(crate) fn kind(name: &str) -> Result<Kind, Diagnostic> {
     name.parse().map_err(|fault| {
-        Complaint::faults("there is no such random world", &[fault], "choose one of the kinds with `--kind`")
+        Diagnostic::faults("there is no such random world", &[fault], "choose one of the kinds with `--kind`")
     })
 }
 
 /// What is said of a random world that its own checks refuse.
-pub(crate) fn not_usable(seed: u64, kind: Kind, faults: &[Fault]) -> Complaint {
+pub(crate) fn not_usable(seed: u64, kind: Kind, faults: &[Fault]) -> Diagnostic {
     let message = format!("the {kind} of seed {seed} is not usable");
-    Complaint::faults(message, faults, "please report the kind and the seed; another seed gives another world")
+    Diagnostic::faults(message, faults, "please report the kind and the seed; another seed gives another world")
 }
 
 /// Writes files into a folder.
-pub(crate) fn folder(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
+pub(crate) fn folder(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Diagnostic> {
     let cannot = |path: &Path, why: std::io::Error| {
-        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
+        Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
     };
     std::fs::create_dir_all(out).map_err(|why| cannot(out, why))?;
     for (name, bytes) in files {
@@ -277,7 +277,7 @@ pub(crate) fn folder(files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<()
     Ok(())
 }
 
-fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
+fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Diagnostic> {
     folder(files, out)?;
     talk.line(&format!("wrote      {} ({})", out.display(), files.keys().cloned().collect::<Vec<_>>().join(", ")));
     talk.line(&format!("next       socrates map draw {}", out.display()));

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use socrates_model::ScenarioEnd;
 
 use crate::batch::Card;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::folder::Hold;
 use crate::kept::Lines;
 use crate::library_index::{self, Library, Part, Row};
@@ -59,7 +59,7 @@ struct Piece<'a> {
 ///
 /// # Errors
 /// A shard that lacks, is unfinished, is there twice or is of another batch; a bundle that is damaged; a folder that cannot be written.
-pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> {
+pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Diagnostic> {
     let shards = found(&options.shards)?;
     let shards = complete(shards)?;
     let Some(first) = shards.first() else { return Err(none(&options.shards)) };
@@ -89,7 +89,7 @@ pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> 
     drop(progress);
     hold.check()?;
     let made = pieces.iter().zip(came.into_iter().flatten()).map(|(piece, what)| ended(piece.row, what));
-    let made = made.collect::<Result<Vec<Ended>, Complaint>>()?;
+    let made = made.collect::<Result<Vec<Ended>, Diagnostic>>()?;
     let keeps = |one: &Found| one.library.keep;
     let keep = keeps(first).filter(|keep| shards.iter().all(|one| keeps(one) == Some(*keep)));
     let list = Library::new(wish, None, keep, pieces.len(), first.library.readings.clone());
@@ -99,14 +99,14 @@ pub fn merge(talk: &Printer, options: &MergeOptions) -> Result<Code, Complaint> 
 }
 
 /// What became of a scenario. That a shard could not make it is no fault of the merge; that its bundle cannot be brought is.
-fn ended(row: &Row, what: Result<Option<Card>, Complaint>) -> Result<Ended, Complaint> {
-    let what = what?.ok_or_else(|| Complaint::input(row.reason.clone(), ""));
+fn ended(row: &Row, what: Result<Option<Card>, Diagnostic>) -> Result<Ended, Diagnostic> {
+    let what = what?.ok_or_else(|| Diagnostic::input(row.reason.clone(), ""));
     Ok(Ended { scenario: row.scenario.clone(), request: row.request.clone(), what })
 }
 
 impl Piece<'_> {
     /// Brings the bundle into the library and hands back its card; none where the scenario failed.
-    fn bring(&self, root: &Path, work: &Path, moves: bool) -> Result<Option<Card>, Complaint> {
+    fn bring(&self, root: &Path, work: &Path, moves: bool) -> Result<Option<Card>, Diagnostic> {
         if self.row.verdict == ScenarioEnd::Failed {
             let dead = |library: &Path| library.join(bundle::dead::FOLDER).join(self.row.scenario.as_str());
             bundle::copy_dead(&dead(self.from), &dead(root), work)?;
@@ -114,7 +114,7 @@ impl Piece<'_> {
         }
         if self.row.bundle.is_empty() {
             let gone =
-                || Complaint::input(format!("`{}` has lost `{}`", self.from.display(), self.row.scenario), AGAIN);
+                || Diagnostic::input(format!("`{}` has lost `{}`", self.from.display(), self.row.scenario), AGAIN);
             let (kept, location) = Lines::of(work).get(&self.row.scenario).ok_or_else(gone)?;
             return Ok(Some(Card::kept(kept, Arc::new(location))));
         }
@@ -132,7 +132,7 @@ impl Piece<'_> {
 }
 
 /// The scenarios of all shards in the order of the whole batch.
-fn pieces(shards: &[Found]) -> Result<Vec<Piece<'_>>, Complaint> {
+fn pieces(shards: &[Found]) -> Result<Vec<Piece<'_>>, Diagnostic> {
     let whole: usize = shards.iter().map(|one| one.library.scenarios.len()).sum();
     for one in shards {
         let (has, wants) = (one.library.scenarios.len(), one.part.shard.share(whole));
@@ -142,7 +142,7 @@ fn pieces(shards: &[Found]) -> Result<Vec<Piece<'_>>, Complaint> {
                 one.part.shard,
                 one.folder.display()
             );
-            return Err(Complaint::input(what, AGAIN));
+            return Err(Diagnostic::input(what, AGAIN));
         }
     }
     let mut rows: Vec<_> = shards.iter().map(|one| (one.folder.as_path(), one.library.scenarios.iter())).collect();
@@ -157,7 +157,7 @@ fn pieces(shards: &[Found]) -> Result<Vec<Piece<'_>>, Complaint> {
 }
 
 /// Every shard of these folders, in the order of their names.
-fn found(folders: &[PathBuf]) -> Result<Vec<Found>, Complaint> {
+fn found(folders: &[PathBuf]) -> Result<Vec<Found>, Diagnostic> {
     let mut shards = Vec::new();
     for folder in folders {
         if let Some(one) = shard_in(folder)? {
@@ -165,7 +165,7 @@ fn found(folders: &[PathBuf]) -> Result<Vec<Found>, Complaint> {
             continue;
         }
         let entries = std::fs::read_dir(folder).map_err(|why| {
-            Complaint::input(format!("cannot read `{}`: {why}", folder.display()), "name the folders of the shards")
+            Diagnostic::input(format!("cannot read `{}`: {why}", folder.display()), "name the folders of the shards")
         })?;
         let mut inside: Vec<PathBuf> =
             entries.filter_map(Result::ok).map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
@@ -182,12 +182,12 @@ fn found(folders: &[PathBuf]) -> Result<Vec<Found>, Complaint> {
 }
 
 /// The shard in a folder; none where there is none.
-fn shard_in(folder: &Path) -> Result<Option<Found>, Complaint> {
+fn shard_in(folder: &Path) -> Result<Option<Found>, Diagnostic> {
     let list = folder.join(library_index::FILE);
     if !list.is_file() {
         if folder.join(WORK).is_dir() {
             let what = format!("`{}` holds something that is not finished", folder.display());
-            return Err(Complaint::input(what, "run the command that makes it again: it goes on where it was"));
+            return Err(Diagnostic::input(what, "run the command that makes it again: it goes on where it was"));
         }
         return Ok(None);
     }
@@ -198,16 +198,16 @@ fn shard_in(folder: &Path) -> Result<Option<Found>, Complaint> {
     }
 }
 
-fn none(folders: &[PathBuf]) -> Complaint {
+fn none(folders: &[PathBuf]) -> Diagnostic {
     let names: Vec<String> = folders.iter().map(|folder| format!("`{}`", folder.display())).collect();
-    Complaint::input(
+    Diagnostic::input(
         format!("no shard lies in {}", names.join(", ")),
         "`socrates run REQUESTS --variants 100 --shard 0/8 --out shards/0` makes the first of eight",
     )
 }
 
 /// The shards in their order, when they are all shards of one batch, each once.
-fn complete(mut shards: Vec<Found>) -> Result<Vec<Found>, Complaint> {
+fn complete(mut shards: Vec<Found>) -> Result<Vec<Found>, Diagnostic> {
     let Some(first) = shards.first() else { return Ok(shards) };
     let alike = |one: &Found| one.part.whole == first.part.whole && one.part.shard.of() == first.part.shard.of();
     if let Some(other) = shards.iter().find(|one| !alike(one)) {
@@ -220,7 +220,7 @@ fn complete(mut shards: Vec<Found>) -> Result<Vec<Found>, Complaint> {
             other.part.shard,
             other.part.whole.short(),
         );
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             what,
             "the same requests, options and program make the shards of one batch; `--shard` alone differs",
         ));
@@ -230,7 +230,7 @@ fn complete(mut shards: Vec<Found>) -> Result<Vec<Found>, Complaint> {
         if let Some(other) = by_index.insert(one.part.shard.index(), one) {
             let (a, b) = (other.folder.display(), one.folder.display());
             let what = format!("shard {} is there twice: in `{a}` and in `{b}`", one.part.shard);
-            return Err(Complaint::input(what, "name each shard once"));
+            return Err(Diagnostic::input(what, "name each shard once"));
         }
     }
     let of = first.part.shard;
@@ -243,7 +243,7 @@ fn complete(mut shards: Vec<Found>) -> Result<Vec<Found>, Complaint> {
         }
         let what = format!("{} of {} shards are missing: {}", missing.len(), of.of(), named.join(", "));
         let again = missing.first().map_or_else(String::new, Shard::to_string);
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             what,
             format!("make them with the same command and `--shard {again}`, then merge again"),
         ));
@@ -251,7 +251,7 @@ fn complete(mut shards: Vec<Found>) -> Result<Vec<Found>, Complaint> {
     if let Some(other) = shards.iter().find(|one| one.library.readings != first.library.readings) {
         let (a, b) = (first.folder.display(), other.folder.display());
         let what = format!("the requests were read differently in `{a}` and `{b}`");
-        return Err(Complaint::input(what, "make them again with one version of the program"));
+        return Err(Diagnostic::input(what, "make them again with one version of the program"));
     }
     shards.sort_by_key(|one| one.part.shard.index());
     Ok(shards)
@@ -287,7 +287,7 @@ mod tests {
         folder
     }
 
-    fn merged(shards: &[PathBuf]) -> Result<Vec<String>, Complaint> {
+    fn merged(shards: &[PathBuf]) -> Result<Vec<String>, Diagnostic> {
         let shards = complete(found(shards)?)?;
         Ok(pieces(&shards)?.iter().map(|piece| piece.row.scenario.to_string()).collect())
     }

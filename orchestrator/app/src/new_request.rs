@@ -1,7 +1,7 @@
 //! `new`: a commented request that its location can play.
 //!
 //! ```text
-//! scene graph ─► places by name ─► pairs, the far ones first ─► read as any request ─► without a complaint ─► plays ─► file
+//! scene graph ─► places by name ─► pairs, the far ones first ─► read as any request ─► without a problem ─► plays ─► file
 //! ```
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,7 +10,7 @@ use std::path::Path;
 use serde_json::json;
 use socrates_model::{Location, NodeId, PlaceClass, Request, Verdict};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::in_process;
 use crate::output::Printer;
 use crate::prepare::load_location;
@@ -38,9 +38,9 @@ const FAR_M: f64 = 30.0;
 const SEED: u64 = 1;
 
 /// Writes a commented request.
-pub async fn new(talk: &Printer, file: &Path, location: &str) -> Result<(), Complaint> {
+pub async fn new(talk: &Printer, file: &Path, location: &str) -> Result<(), Diagnostic> {
     if file.exists() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` exists already", file.display()),
             "choose another name; nothing was written",
         ));
@@ -49,7 +49,7 @@ pub async fn new(talk: &Printer, file: &Path, location: &str) -> Result<(), Comp
     let (map, _) = load_location(location, folder)?;
     let text = template(location, &map).await;
     std::fs::write(file, text)
-        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", file.display()), "check the folder"))?;
+        .map_err(|why| Diagnostic::input(format!("cannot write `{}`: {why}", file.display()), "check the folder"))?;
     talk.line(&format!("wrote      {}", file.display()));
     talk.line(&format!("next       socrates read {}", crate::files::shell(file)));
     talk.result(&json!({ "request": file.display().to_string() }));
@@ -63,7 +63,7 @@ struct Wording {
     story: &'static str,
 }
 
-/// The request for a location: one that is read without a complaint and, where there is such a one, realised.
+/// The request for a location: one that is read without a problem and, where there is such a one, realised.
 async fn template(name: &str, location: &Location) -> String {
     let places = places(location);
     let mut clean: Vec<Wording> = Vec::new();

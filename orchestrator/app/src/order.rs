@@ -8,7 +8,7 @@ use socrates_model::wire::ScenarioSpec;
 use socrates_model::{AuthorSpec, Digest, FORMAT};
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::prepare::Prepared;
 
 /// The part of a [`Prepared`] request that its scenarios do not name.
@@ -31,15 +31,15 @@ pub(crate) struct Order {
 }
 
 /// Where contents are read from by their digests.
-pub(crate) type Get<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
+pub(crate) type Get<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Diagnostic> + 'a;
 
 impl Order {
     /// The order of a request in a batch. `put` stores a content.
     pub(crate) fn of(
         prepared: &Prepared,
         library: Digest,
-        put: &dyn Fn(&[u8]) -> Result<Digest, Complaint>,
-    ) -> Result<Self, Complaint> {
+        put: &dyn Fn(&[u8]) -> Result<Digest, Diagnostic>,
+    ) -> Result<Self, Diagnostic> {
         let file = |(name, bytes): (&String, &Vec<u8>)| Ok((name.clone(), put(bytes)?));
         Ok(Self {
             format: FORMAT,
@@ -47,7 +47,7 @@ impl Order {
             name: prepared.name.clone(),
             author: prepared.author.clone(),
             author_note: prepared.author_note.clone(),
-            location_files: prepared.location_files.iter().map(file).collect::<Result<_, Complaint>>()?,
+            location_files: prepared.location_files.iter().map(file).collect::<Result<_, Diagnostic>>()?,
             injected: prepared.injected.clone(),
             style: prepared.style.clone(),
             keep_answers: prepared.keep_answers,
@@ -55,8 +55,8 @@ impl Order {
     }
 
     /// The order as it is stored.
-    pub(crate) fn text(&self) -> Result<String, Complaint> {
-        serde_json::to_string(self).map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))
+    pub(crate) fn text(&self) -> Result<String, Diagnostic> {
+        serde_json::to_string(self).map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))
     }
 
     /// Contents that it names.
@@ -68,9 +68,9 @@ impl Order {
     ///
     /// # Errors
     /// When there is none, it cannot be read, or it is of a newer program.
-    pub(crate) fn read(spec: &ScenarioSpec, get: &Get<'_>) -> Result<Self, Complaint> {
+    pub(crate) fn read(spec: &ScenarioSpec, get: &Get<'_>) -> Result<Self, Diagnostic> {
         let digest = spec.order.ok_or_else(|| {
-            Complaint::input(
+            Diagnostic::input(
                 format!("scenario `{}` was submitted without what its bundle is written from", spec.id),
                 "`socrates cluster submit` of this version hands it over; `socrates run` writes its bundles itself",
             )
@@ -78,13 +78,13 @@ impl Order {
         let order: Self = parsed(&spec.id.to_string(), "order", &get(&digest)?)?;
         if order.format > FORMAT {
             let what = format!("the order of `{}` has format {}; this program knows {FORMAT}", spec.id, order.format);
-            return Err(Complaint::input(what, "collect with the version that submitted it"));
+            return Err(Diagnostic::input(what, "collect with the version that submitted it"));
         }
         Ok(order)
     }
 
     /// The prepared request that the scenario is made from.
-    pub(crate) fn prepared(self, spec: &ScenarioSpec, get: &Get<'_>, config: &Config) -> Result<Prepared, Complaint> {
+    pub(crate) fn prepared(self, spec: &ScenarioSpec, get: &Get<'_>, config: &Config) -> Result<Prepared, Diagnostic> {
         let id = spec.id.to_string();
         let file = |(name, digest): (String, Digest)| Ok((plain(&id, name)?, get(&digest)?));
         let pins = spec.pinned.iter().map(|(role, digest)| {
@@ -97,9 +97,9 @@ impl Order {
             file: None,
             request: parsed(&id, "request", &get(&spec.request)?)?,
             location: parsed(&id, "location", &get(&spec.location)?)?,
-            location_files: self.location_files.into_iter().map(file).collect::<Result<_, Complaint>>()?,
+            location_files: self.location_files.into_iter().map(file).collect::<Result<_, Diagnostic>>()?,
             reading: parsed(&id, "reading", &get(&spec.reading)?)?,
-            pins: pins.collect::<Result<_, Complaint>>()?,
+            pins: pins.collect::<Result<_, Diagnostic>>()?,
             injected: self.injected,
             style: self.style,
             notes: Vec::new(),
@@ -113,17 +113,17 @@ impl Order {
 }
 
 /// A name without folders: it becomes a file of the bundle.
-fn plain(id: &str, name: String) -> Result<String, Complaint> {
+fn plain(id: &str, name: String) -> Result<String, Diagnostic> {
     let inside = !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', '\0']);
     if inside { Ok(name) } else { Err(damaged(id, "order", &format!("`{name}` is no name of a file"))) }
 }
 
-fn parsed<T: serde::de::DeserializeOwned>(id: &str, what: &str, bytes: &[u8]) -> Result<T, Complaint> {
+fn parsed<T: serde::de::DeserializeOwned>(id: &str, what: &str, bytes: &[u8]) -> Result<T, Diagnostic> {
     serde_json::from_slice(bytes).map_err(|why| damaged(id, what, &why.to_string()))
 }
 
-fn damaged(id: &str, what: &str, why: &str) -> Complaint {
-    Complaint::input(
+fn damaged(id: &str, what: &str, why: &str) -> Diagnostic {
+    Diagnostic::input(
         format!("the {what} of `{id}` cannot be read: {why}"),
         "it was submitted by another program, or is damaged",
     )

@@ -17,7 +17,7 @@ use socrates_export::scenario::{Cells, Columns};
 use socrates_scoring::metrics::KEY_FIGURES;
 use socrates_stream::csv::Row;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::index::DENSITY;
 
 /// Columns of whole numbers.
@@ -71,7 +71,7 @@ impl<'a> Column<'a> {
 ///
 /// # Errors
 /// A file that cannot be written, or a cell of a column of numbers that is none.
-pub(crate) fn write(out: &Path, columns: &[(usize, &str)], rows: &[&Row]) -> Result<(), Complaint> {
+pub(crate) fn write(out: &Path, columns: &[(usize, &str)], rows: &[&Row]) -> Result<(), Diagnostic> {
     let column = |(at, name): &(usize, &'_ str)| {
         let cells: Vec<Option<&str>> = rows.iter().map(|row| row.cell(*at).filter(|cell| !cell.is_empty())).collect();
         let values = if WHOLE.contains(name) {
@@ -83,7 +83,7 @@ pub(crate) fn write(out: &Path, columns: &[(usize, &str)], rows: &[&Row]) -> Res
         };
         Ok((cells, values))
     };
-    let made: Result<Vec<_>, Complaint> = columns.iter().map(column).collect();
+    let made: Result<Vec<_>, Diagnostic> = columns.iter().map(column).collect();
     let made = made?;
     let columns = columns.iter().zip(made).map(|((_, name), (cells, values))| Column::of(name, &cells, values));
     put(out, "runs", &columns.collect::<Vec<_>>())
@@ -93,7 +93,7 @@ pub(crate) fn write(out: &Path, columns: &[(usize, &str)], rows: &[&Row]) -> Res
 ///
 /// # Errors
 /// A file that cannot be written.
-pub(crate) fn table(out: &Path, table: &Columns) -> Result<(), Complaint> {
+pub(crate) fn table(out: &Path, table: &Columns) -> Result<(), Diagnostic> {
     let column = |(name, cells): &'_ (&'static str, Cells)| match cells {
         Cells::Whole(values) => Column::of(name, values, Values::Signed(values.iter().flatten().copied().collect())),
         Cells::Real(values) => Column::of(name, values, Values::Figure(values.iter().flatten().copied().collect())),
@@ -105,9 +105,9 @@ pub(crate) fn table(out: &Path, table: &Columns) -> Result<(), Complaint> {
     put(out, table.name, &table.columns.iter().map(column).collect::<Vec<_>>())
 }
 
-fn put(out: &Path, name: &str, columns: &[Column<'_>]) -> Result<(), Complaint> {
+fn put(out: &Path, name: &str, columns: &[Column<'_>]) -> Result<(), Diagnostic> {
     let cannot = |why: String| {
-        Complaint::input(format!("cannot write `{}`: {why}", out.display()), "--out chooses another place")
+        Diagnostic::input(format!("cannot write `{}`: {why}", out.display()), "--out chooses another place")
     };
     let fields: Result<Vec<Arc<Type>>, ParquetError> =
         columns.iter().map(|column| column.field().map(Arc::new)).collect();
@@ -128,12 +128,12 @@ fn put(out: &Path, name: &str, columns: &[Column<'_>]) -> Result<(), Complaint> 
     Ok(())
 }
 
-fn numbers<T: std::str::FromStr>(name: &str, cells: &[Option<&str>], rows: &[&Row]) -> Result<Vec<T>, Complaint> {
+fn numbers<T: std::str::FromStr>(name: &str, cells: &[Option<&str>], rows: &[&Row]) -> Result<Vec<T>, Diagnostic> {
     let filled = cells.iter().zip(rows).filter_map(|(cell, row)| Some(((*cell)?, row.line)));
     let number = |(cell, line): (&str, usize)| {
         cell.parse().map_err(|_bad| {
             let what = format!("line {line} of the table: `{cell}` is no number, and `{name}` is a column of numbers");
-            Complaint::input(what, "`socrates library gallery LIBRARY` writes the table anew")
+            Diagnostic::input(what, "`socrates library gallery LIBRARY` writes the table anew")
         })
     };
     filled.map(number).collect()
@@ -147,7 +147,7 @@ mod tests {
 
     use super::*;
 
-    fn written(text: &str) -> Result<Vec<Vec<(String, Field)>>, Complaint> {
+    fn written(text: &str) -> Result<Vec<Vec<(String, Field)>>, Diagnostic> {
         let table = Table::read(text).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("index.parquet");

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use socrates_model::{Digest, ScenarioEnd, ScenarioId};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::keep::Keep;
 use crate::output::Printer;
 use crate::{bundle, library_index};
 
 /// Folder, inside that of the result, which only a resumed run needs.
-pub(crate) const WORK: &str = ".socrates";
+pub const WORK: &str = ".socrates";
 /// File in it that holds the digest of the wish.
 const WISH: &str = "wish";
 /// File in it that says which bundles a library keeps that is being made.
@@ -75,15 +75,15 @@ pub(crate) fn fixed(root: &Path) -> Option<Keep> {
 }
 
 /// Fixes which bundles are kept in the library of this work folder.
-pub(crate) fn fix(work: &Path, keep: Keep) -> Result<(), Complaint> {
+pub(crate) fn fix(work: &Path, keep: Keep) -> Result<(), Diagnostic> {
     crate::files::write(&work.join(KEEP), keep.name().as_bytes())
 }
 
 /// Makes the work folder and marks it with the wish, so that the same command resumes it. What ended without a bundle is begun
 /// anew.
-pub(crate) fn claim(dir: &Path, wish: Digest) -> Result<PathBuf, Complaint> {
+pub(crate) fn claim(dir: &Path, wish: Digest) -> Result<PathBuf, Diagnostic> {
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder")
+        Diagnostic::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder")
     };
     let work = dir.join(WORK);
     if ended(dir).is_some() {

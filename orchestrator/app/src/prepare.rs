@@ -13,7 +13,7 @@ use socrates_model::{
 };
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::layout;
 use crate::raw_map;
@@ -27,19 +27,19 @@ const MAX_PIN_BYTES: u64 = 16 * 1024 * 1024;
 
 /// A request with everything it names, read and checked.
 #[derive(Debug, Clone)]
-pub(crate) struct Prepared {
+pub struct Prepared {
     /// Name of the scenario: the file's stem, or the name of the bundle whose request it is.
-    pub(crate) name: String,
+    pub name: String,
     /// The file it was read from, if it was one.
     pub(crate) file: Option<PathBuf>,
     /// The request, options applied.
-    pub(crate) request: Request,
+    pub request: Request,
     /// The location.
-    pub(crate) location: Location,
+    pub location: Location,
     /// Its files, for the bundle.
     pub(crate) location_files: BTreeMap<String, Vec<u8>>,
     /// The reading.
-    pub(crate) reading: Reading,
+    pub reading: Reading,
     /// Pinned artifacts as JSON by role.
     pub(crate) pins: BTreeMap<Role, String>,
     /// Faults to be put into the author's answers, as settings of its jobs; empty for none.
@@ -79,13 +79,13 @@ fn is_driven(request: &Request) -> bool {
 }
 
 /// Every request file named on the command line, folders opened.
-pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
+pub fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Diagnostic> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
             let mut inside: Vec<PathBuf> = std::fs::read_dir(path)
                 .map_err(|why| {
-                    Complaint::input(
+                    Diagnostic::input(
                         format!("cannot list `{}`: {why}", path.display()),
                         "name request files or a folder of them",
                     )
@@ -96,7 +96,7 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
                 .collect();
             inside.sort();
             if inside.is_empty() {
-                return Err(Complaint::input(
+                return Err(Diagnostic::input(
                     format!("`{}` holds no request (*.toml)", path.display()),
                     "`socrates new my.toml` writes one",
                 ));
@@ -110,7 +110,7 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
 }
 
 /// Reads and checks one request file.
-pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Complaint> {
+pub fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Diagnostic> {
     let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
     let of_bundle = file.ends_with(layout::REQUEST.path) && folder.join(layout::MANIFEST.path).is_file();
@@ -120,28 +120,28 @@ pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config
     let prepared = prepare_text(&name, &text, &shown, folder, options, config).map_err(|why| {
         // Of hundreds of files, the name of the one is what helps.
         let what = if why.what.contains(&shown) { why.what } else { format!("`{shown}`: {}", why.what) };
-        Complaint { what, ..why }
+        Diagnostic { what, ..why }
     })?;
     Ok(Prepared { file: Some(file.to_path_buf()), ..prepared })
 }
 
 /// Checks the text of a request. `shown` names it in messages, `folder` is where its paths start.
-pub(crate) fn prepare_text(
+pub fn prepare_text(
     name: &str,
     text: &str,
     shown: &str,
     folder: &Path,
     options: Option<&RunOptions>,
     config: &Config,
-) -> Result<Prepared, Complaint> {
+) -> Result<Prepared, Diagnostic> {
     let planners = socrates_planners::names();
     let mut request = Request::of_toml(text, Some(&planners)).map_err(|problems| {
-        let mut complaint = Complaint::input(
+        let mut diagnostic = Diagnostic::input(
             format!("the request `{shown}` has {}", plural(problems.len(), "problem")),
             "`socrates new my.toml` writes a request with every key explained; `socrates explain J-REQUEST`",
         );
-        complaint.causes = problems.iter().map(|bad| bad.told(shown)).collect();
-        complaint
+        diagnostic.causes = problems.iter().map(|bad| bad.told(shown)).collect();
+        diagnostic
     })?;
     let mut notes = read_nav2(&mut request, folder)?;
     if let Some(options) = options {
@@ -151,7 +151,7 @@ pub(crate) fn prepare_text(
     if !request.robot.planners.contains(&PlannerName::reference()) {
         request.robot.planners.insert(0, PlannerName::reference());
     }
-    let of_request = |why: Complaint| Complaint { what: format!("the request `{shown}`: {}", why.what), ..why };
+    let of_request = |why: Diagnostic| Diagnostic { what: format!("the request `{shown}`: {}", why.what), ..why };
     let (mut location, location_files, raw) = load_any(&request.location, folder).map_err(of_request)?;
     notes.extend(raw);
     if let Some(description) = &request.location_description {
@@ -181,12 +181,12 @@ pub(crate) fn prepare_text(
     let long = socrates_prompts::too_long(&request);
     // Rules read the whole request; whoever is asked in messages would not see its end.
     if author != AuthorSpec::Offline && !long.is_empty() {
-        let mut complaint = Complaint::input(
+        let mut diagnostic = Diagnostic::input(
             format!("the request `{shown}` is too long for a language model"),
             "shorten these texts, or take `--author offline`, which reads them whole",
         );
-        complaint.causes = long.iter().map(|why| format!("J-REQUEST {why}")).collect();
-        return Err(complaint);
+        diagnostic.causes = long.iter().map(|why| format!("J-REQUEST {why}")).collect();
+        return Err(diagnostic);
     }
     let injected = injected(options.map_or("", |options| options.inject.as_str()))?;
     if !injected.is_empty() {
@@ -235,10 +235,10 @@ fn read(request: &Request, location: &Location, by_author: bool, pinned: Option<
 }
 
 /// Refuses a request whose reading says that it cannot be made, with what would settle it.
-fn check_reading(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Complaint> {
+fn check_reading(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Diagnostic> {
     let stops: Vec<Fault> = socrates_model::fault::hard(&reading.problems);
     if !stops.is_empty() {
-        return Err(Complaint::faults(
+        return Err(Diagnostic::faults(
             format!("the request `{shown}` asks for something that cannot be made"),
             &stops,
             match socrates_offline::settled_by(request, location).as_slice() {
@@ -255,9 +255,9 @@ fn check_reading(reading: &Reading, request: &Request, location: &Location, show
 }
 
 /// Refuses a request for which the map has no ways, with what does not fit, where, and by how much.
-fn check_ways(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Complaint> {
+fn check_ways(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Diagnostic> {
     let Some(miss) = socrates_offline::impossible(request, reading, location) else { return Ok(()) };
-    Err(Complaint::faults(
+    Err(Diagnostic::faults(
         format!("the request `{shown}` asks for ways that the location `{}` does not have", location.name),
         &[Fault::new(FaultCode::ECannot, "paths", miss.to_string())],
         format!(
@@ -273,7 +273,7 @@ fn check_people(
     reading: &Reading,
     pins: &BTreeMap<Role, String>,
     shown: &str,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let pinned = pins.get(&Role::Proposal).and_then(|text| serde_json::from_str::<Proposal>(text).ok());
     let stated = |fact: &Fact| if let FactKind::Humans(count) = fact.kind { Some(count) } else { None };
     let read = || reading.facts.iter().find_map(stated).map(|count| (1..=count).map(HumanId::new).collect());
@@ -290,26 +290,26 @@ fn check_people(
     let names = if names.is_empty() { "nobody".to_owned() } else { names.join(", ") };
     let what = format!("the request `{shown}` names people who are not in it");
     let hint = format!("there is {names}; `socrates read {}` shows who does what", files::shell(Path::new(shown)));
-    Err(Complaint { causes, ..Complaint::input(what, hint) })
+    Err(Diagnostic { causes, ..Diagnostic::input(what, hint) })
 }
 
 /// The settings of `--inject`.
-fn injected(text: &str) -> Result<BTreeMap<String, String>, Complaint> {
+fn injected(text: &str) -> Result<BTreeMap<String, String>, Diagnostic> {
     let mut settings = BTreeMap::new();
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
         let (kind, rate) = part.split_once('=').ok_or_else(|| {
-            Complaint::input(format!("`--inject {part}` has no rate"), "write --inject gdisc=0.3, for example")
+            Diagnostic::input(format!("`--inject {part}` has no rate"), "write --inject gdisc=0.3, for example")
         })?;
         settings.insert(format!("fault.{}", kind.trim()), rate.trim().to_owned());
     }
     socrates_author::FaultRates::from_settings(&settings).map_err(|why| {
-        Complaint::input(format!("--inject: {}", why.message), "write --inject gdisc=0.3, for example")
+        Diagnostic::input(format!("--inject: {}", why.message), "write --inject gdisc=0.3, for example")
     })?;
     Ok(settings)
 }
 
 /// Flags win over the request, and what it writes over what is not written.
-fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
+fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Diagnostic> {
     if let Some(seeds) = &options.seeds {
         request.run.seeds = Some(seeds.clone());
     }
@@ -321,7 +321,7 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
             let own = planner.external().is_some() || request.robot.nav2.contains_key(planner);
             !own && !known.contains(&planner.as_str())
         }) {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("J-PLANNER `--planner`: there is no planner `{planner}`"),
                 format!("planners: {}", known.join(", ")),
             ));
@@ -329,7 +329,7 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
         request.robot.planners.clone_from(&options.planner);
     }
     if options.driver.is_some() && !is_driven(request) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "`--driver` starts a driver outside, and no planner and no person's model is one",
             "add --planner external:NAME with the name that the driver gives itself, or name it in [people] of the request",
         ));
@@ -348,7 +348,7 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
 }
 
 /// A location by shipped name or folder, with its files. A map without a scene graph is annotated.
-pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Complaint> {
+pub fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Diagnostic> {
     load_any(name, folder).map(|(location, files, _)| (location, files))
 }
 
@@ -362,9 +362,9 @@ pub(crate) fn shadowed(name: &str, folder: &Path) -> Option<String> {
 type Loaded = (Location, BTreeMap<String, Vec<u8>>, Option<String>);
 
 /// A location by shipped name, folder or map file.
-fn load_any(name: &str, folder: &Path) -> Result<Loaded, Complaint> {
+fn load_any(name: &str, folder: &Path) -> Result<Loaded, Diagnostic> {
     let wrong = |faults: Vec<Fault>| {
-        Complaint::faults(
+        Diagnostic::faults(
             format!("the location `{name}` is not usable"),
             &faults,
             format!(
@@ -385,7 +385,7 @@ fn load_any(name: &str, folder: &Path) -> Result<Loaded, Complaint> {
         return Ok((map.location, map.files, Some(note)));
     }
     if !dir.is_dir() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("there is no location `{name}`"),
             format!(
                 "give a folder with a map (map.yaml and its image), or one of: {}",
@@ -410,16 +410,17 @@ fn read_pin<T: Serialize + DeserializeOwned>(
     role: Role,
     path: &Path,
     take: impl Fn(Imported) -> Option<T>,
-) -> Result<String, Complaint> {
+) -> Result<String, Diagnostic> {
     let text = files::text(path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
     let Err(own) = serde_json::from_str::<T>(&text) else { return Ok(text) };
     let wrong = |cause: String| {
-        let mut complaint = Complaint::input(
+        let mut diagnostic = Diagnostic::input(
             format!("the pinned {role} `{}` cannot be read", path.display()),
             format!("`socrates dev schema {role}` prints the form"),
         );
-        complaint.causes = vec![format!("as our own form: {own}"), format!("as a file of the published tool: {cause}")];
-        complaint
+        diagnostic.causes =
+            vec![format!("as our own form: {own}"), format!("as a file of the published tool: {cause}")];
+        diagnostic
     };
     let imported = socrates_export::socrates_json::read(&text).map_err(|why| wrong(why.to_string()))?;
     match take(imported).map(|artifact| serde_json::to_string(&artifact)) {
@@ -431,7 +432,7 @@ fn read_pin<T: Serialize + DeserializeOwned>(
 
 /// Puts the text of every parameter file of Nav2 where its name stands, and refuses one that no robot could be driven with. Gives
 /// back what is to be said of them.
-fn read_nav2(request: &mut Request, folder: &Path) -> Result<Vec<String>, Complaint> {
+fn read_nav2(request: &mut Request, folder: &Path) -> Result<Vec<String>, Diagnostic> {
     let mut notes = Vec::new();
     for (name, text) in &mut request.robot.nav2 {
         let mut file = "the request".to_owned();
@@ -442,10 +443,10 @@ fn read_nav2(request: &mut Request, folder: &Path) -> Result<Vec<String>, Compla
         }
         let loaded = socrates_planners::params::read(text).map_err(|bad| {
             let hint = "Nav2's own nav2_params.yaml is such a file; what it leaves out has Nav2's default";
-            let mut complaint =
-                Complaint::input(format!("`robot.nav2.{name}`: the parameters of {file} cannot be used"), hint);
-            complaint.causes = bad.to_string().lines().map(str::to_owned).collect();
-            complaint
+            let mut diagnostic =
+                Diagnostic::input(format!("`robot.nav2.{name}`: the parameters of {file} cannot be used"), hint);
+            diagnostic.causes = bad.to_string().lines().map(str::to_owned).collect();
+            diagnostic
         })?;
         notes.extend(loaded.warning.map(|warning| format!("planner {name}: {warning}")));
     }
@@ -453,10 +454,10 @@ fn read_nav2(request: &mut Request, folder: &Path) -> Result<Vec<String>, Compla
 }
 
 /// The author to ask, and why this one.
-fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(AuthorSpec, String), Complaint> {
+fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(AuthorSpec, String), Diagnostic> {
     let configured = || {
         config.text("author.kind").parse::<AuthorSpec>().map_err(|bad| {
-            Complaint::input(format!("`author.kind`: {bad}"), "`socrates config author` prints the manual")
+            Diagnostic::input(format!("`author.kind`: {bad}"), "`socrates config author` prints the manual")
         })
     };
     match if *wish == AuthorSpec::Auto { configured()? } else { wish.clone() } {
@@ -493,7 +494,7 @@ pub(crate) fn slug(text: &str) -> String {
 }
 
 /// The scenario id of variant `index` of `count`.
-pub(crate) fn scenario_id(name: &str, seed: u64, index: u32, count: u32) -> Result<ScenarioId, Complaint> {
+pub fn scenario_id(name: &str, seed: u64, index: u32, count: u32) -> Result<ScenarioId, Diagnostic> {
     let id = if count == 1 { format!("{name}-{seed}") } else { format!("{name}-{seed}-{:05}", index + 1) };
-    ScenarioId::new(id).map_err(|bad| Complaint::input(bad.to_string(), "rename the request file"))
+    ScenarioId::new(id).map_err(|bad| Diagnostic::input(bad.to_string(), "rename the request file"))
 }

@@ -8,7 +8,7 @@ use socrates_model::AuthorSpec;
 use socrates_orchestrator::price_of;
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Largest table of prices that is read, bytes.
 const MAX_PRICES_BYTES: u64 = 4 * 1024 * 1024;
@@ -16,7 +16,7 @@ const MAX_PRICES_BYTES: u64 = 4 * 1024 * 1024;
 /// Prices of one model, per million tokens.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Price {
+pub struct Price {
     /// Of input.
     pub(crate) input: f64,
     /// Of input that came from the server's cache; without one, as other input.
@@ -38,7 +38,7 @@ pub(crate) fn dollars() -> String {
 }
 
 /// Prices of a million tokens in and out by model, in millionths, of the table that the configuration names; none without one.
-pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>, Complaint> {
+pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>, Diagnostic> {
     let named = config.text("author.prices");
     if named.is_empty() {
         return Ok(BTreeMap::new());
@@ -50,34 +50,34 @@ pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>,
 }
 
 /// A limit of money holds only where the author has a price.
-pub(crate) fn check_limit(config: &Config, author: &AuthorSpec) -> Result<(), Complaint> {
+pub(crate) fn check_limit(config: &Config, author: &AuthorSpec) -> Result<(), Diagnostic> {
     let limit = config.number("orchestrator.cents_per_scenario");
     check_cents(config, author, "orchestrator.cents_per_scenario", limit)
 }
 
 /// The same of a limit in cents that has another name; 0 sets none.
-pub(crate) fn check_cents(config: &Config, author: &AuthorSpec, name: &str, limit: u64) -> Result<(), Complaint> {
+pub(crate) fn check_cents(config: &Config, author: &AuthorSpec, name: &str, limit: u64) -> Result<(), Diagnostic> {
     let Some((kind, model)) = author.server().filter(|_| limit > 0) else { return Ok(()) };
     if price_of(&prices_of(config)?, &format!("{}:{model}", kind.name())).is_some() {
         return Ok(());
     }
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         format!("`{name}` is {limit}, but `{model}` has no price"),
         "`author.prices` names a table of prices; a model without one would be asked without a limit",
     ))
 }
 
 /// Prices by model.
-pub(crate) fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
+pub fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Diagnostic> {
     let hint = "each table is a model: [\"gpt-4o\"] with input, output, perhaps cached_input, currency, valid_from";
     let text = crate::files::text(file, MAX_PRICES_BYTES, hint)?;
     let prices: BTreeMap<String, Price> = toml::from_str(&text)
-        .map_err(|why| Complaint::input(format!("`{}` is no table of prices: {why}", file.display()), hint))?;
+        .map_err(|why| Diagnostic::input(format!("`{}` is no table of prices: {why}", file.display()), hint))?;
     for (model, price) in &prices {
         let all = [price.input, price.output, price.cached_input.unwrap_or(0.0)];
         if all.iter().any(|value| !value.is_finite() || *value < 0.0) {
             let what = format!("`{}`: a price of `{model}` is negative or no number", file.display());
-            return Err(Complaint::input(what, hint));
+            return Err(Diagnostic::input(what, hint));
         }
     }
     Ok(prices)

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use socrates_author::{Keys, Recordings};
 use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::rules::Role;
 use socrates_link::{Bus, Mode, SECURE, ZenohConfig};
@@ -15,7 +16,7 @@ use socrates_stream::{ShmConfig, ShmHost};
 use tokio::sync::watch;
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::folder;
 use crate::keys;
 use crate::logs;
@@ -43,6 +44,8 @@ pub struct WorkerOptions {
     pub inject: String,
     /// File in which its log is kept, as JSON lines; none for nowhere.
     pub log_file: Option<PathBuf>,
+    /// Whether jobs may name folders of recordings: whoever hands them in is the user of this process.
+    pub own_jobs: bool,
 }
 
 /// Options of the orchestrator process.
@@ -74,7 +77,7 @@ pub struct OrchestratorOptions {
 }
 
 /// Version of the stages' code; results of another version are not reused.
-pub(crate) const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
+pub const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Where this user's shared memory is arranged.
 pub(crate) fn shared_memory(config: &Config) -> ShmConfig {
@@ -82,9 +85,9 @@ pub(crate) fn shared_memory(config: &Config) -> ShmConfig {
 }
 
 /// Serves one stage until told to leave.
-pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Complaint> {
+pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Diagnostic> {
     let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| {
-        Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
+        Diagnostic::input(bad.to_string(), "`socrates cluster worker --help`")
     })?;
     if let Some(file) = &options.log_file {
         logs::keep(config, file);
@@ -95,7 +98,7 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
     let blobs = options.blobs.as_ref().map_or(Blobs::Bus, |dir| Blobs::Local(LocalBlobs::new(dir, false)));
     let mut settings = WorkerConfig::new(blobs, &options.spool, CODE_VERSION);
     settings.faults = FaultPlan::parse(&options.inject)
-        .map_err(|why| Complaint::input(why.to_string(), "for example --inject die_before_report=2"))?;
+        .map_err(|why| Diagnostic::input(why.to_string(), "for example --inject die_before_report=2"))?;
     settings.host = host();
     // A worker that leaves with its supervisor shares the machine with whoever records its reports.
     settings.durable = !options.tied || options.durable;
@@ -104,7 +107,8 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
         // Control and stream never share a session, so that a frozen viewer stalls no job.
         settings.live = Some(joined(config, Role::Worker, connect, namespace, "stream", options.tied).await?);
     }
-    let author_keys = crate::authors::keys(config)?;
+    let recordings = if options.own_jobs { Recordings::Own } else { Recordings::Refused };
+    let author_keys = Keys { recordings, ..crate::authors::keys(config)? };
     let live = settings.live.clone();
     let served = match stage {
         Stage::Proposal => {
@@ -124,7 +128,7 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
         }
         Stage::Scoring => socrates_kit::serve(socrates_scoring::ScoringStage, bus.clone(), settings, shutdown).await,
         Stage::Review => {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 "a review is done by a person: `socrates run --ask`",
                 "stages of workers: proposal, paths, behaviors, simulation, scoring",
             ));
@@ -141,7 +145,7 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
     served.map_err(|why| {
         // Neither a folder nor a version mends itself when the worker is started again.
         let stuck = matches!(why, KitError::Folder { .. } | KitError::Incompatible(_));
-        Complaint::input(format!("the {stage} worker stops: {why}"), "the same command resumes once that is mended")
+        Diagnostic::input(format!("the {stage} worker stops: {why}"), "the same command resumes once that is mended")
             .with_code(if stuck { Code::Input } else { Code::Ours })
     })
 }
@@ -154,13 +158,13 @@ async fn joined(
     namespace: &str,
     name: &str,
     tied: bool,
-) -> Result<Arc<dyn Bus>, Complaint> {
+) -> Result<Arc<dyn Bus>, Diagnostic> {
     let joined = client(config, role, endpoint, namespace, name).await;
     joined.map_err(|why| if tied { why.with_code(Code::Ours) } else { why })
 }
 
 /// Refuses to listen where other machines can reach it, unless that is meant.
-fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
+fn reachable(listen: &str, insecure: bool) -> Result<(), Diagnostic> {
     // Nobody comes in there without keys.
     if is_local(listen) || listen.starts_with(SECURE) {
         return Ok(());
@@ -173,7 +177,7 @@ fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
         tracing::warn!("{open}");
         return Ok(());
     }
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         open,
         "make keys with `socrates cluster keys` and listen on quic/0.0.0.0:7447 with --keys; or listen on tcp/127.0.0.1:7447 and let \
          workers come through `ssh -L`, or say --insecure in a network that you trust",
@@ -193,18 +197,18 @@ fn is_local(endpoint: &str) -> bool {
 }
 
 /// The listener of the figures: on this machine alone, unless more is meant.
-async fn figures(talk: &Printer, address: &str, insecure: bool) -> Result<tokio::net::TcpListener, Complaint> {
+async fn figures(talk: &Printer, address: &str, insecure: bool) -> Result<tokio::net::TcpListener, Diagnostic> {
     let such = "for example --metrics 127.0.0.1:9464";
     let cannot = |why: &dyn std::fmt::Display| {
-        Complaint::input(format!("figures cannot be served on `{address}`: {why}"), format!("another port, {such}"))
+        Diagnostic::input(format!("figures cannot be served on `{address}`: {why}"), format!("another port, {such}"))
     };
     let mut found = tokio::net::lookup_host(address)
         .await
-        .map_err(|why| Complaint::input(format!("`{address}` is no address with a port: {why}"), such))?;
-    let at = found.next().ok_or_else(|| Complaint::input(format!("`{address}` is no address of a machine"), such))?;
+        .map_err(|why| Diagnostic::input(format!("`{address}` is no address with a port: {why}"), such))?;
+    let at = found.next().ok_or_else(|| Diagnostic::input(format!("`{address}` is no address of a machine"), such))?;
     if !at.ip().is_loopback() && !insecure {
         let open = format!("figures on `{address}` can be read from other machines, by anybody and in clear");
-        return Err(Complaint::input(open, format!("{such}; or say --insecure in a network that you trust")));
+        return Err(Diagnostic::input(open, format!("{such}; or say --insecure in a network that you trust")));
     }
     let listener = tokio::net::TcpListener::bind(at).await.map_err(|why| cannot(&why))?;
     let at = listener.local_addr().map_err(|why| cannot(&why))?;
@@ -213,7 +217,7 @@ async fn figures(talk: &Printer, address: &str, insecure: bool) -> Result<tokio:
 }
 
 /// Runs the orchestrator until told to leave.
-pub async fn orchestrator(talk: &Printer, config: &Config, options: &OrchestratorOptions) -> Result<(), Complaint> {
+pub async fn orchestrator(talk: &Printer, config: &Config, options: &OrchestratorOptions) -> Result<(), Diagnostic> {
     // What one run makes is made again; what a cluster holds is not.
     if !options.tied {
         folder::of_one_machine(&options.dir)?;
@@ -239,7 +243,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
             joined(config, Role::Orchestrator, connect, &options.namespace, "orchestrator", options.tied).await?
         }
         (Some(_), Some(_)) | (None, None) => {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 "give either --listen or --connect",
                 "for example `socrates cluster up --dir jobs --listen tcp/127.0.0.1:7447`",
             ));
@@ -277,7 +281,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
         // What is wrong with the store is still wrong after another start.
         let stuck = why.is::<StoreError>() || why.is::<BlobError>();
         let in_use = why.downcast_ref::<StoreError>().is_some_and(|why| matches!(why, StoreError::Locked { .. }));
-        Complaint::input(
+        Diagnostic::input(
             format!("the orchestrator stops: {why:#}"),
             format!("the jobs are kept in `{}`", options.dir.display()),
         )
@@ -298,11 +302,11 @@ pub(crate) async fn looker(
     endpoint: &str,
     namespace: &str,
     name: &str,
-) -> Result<Arc<dyn Bus>, Complaint> {
+) -> Result<Arc<dyn Bus>, Diagnostic> {
     let hint = "is `socrates run` or `socrates cluster up` running there, and is the port open from here?";
     let nobody = |tried: &str| {
         let what = format!("nobody answers at `{endpoint}`: {tried}");
-        Complaint::input(what, hint)
+        Diagnostic::input(what, hint)
     };
     not_in_clear(config, endpoint)?;
     let patience = match endpoint.strip_prefix("tcp/") {
@@ -328,23 +332,23 @@ pub(crate) async fn looker(
 }
 
 /// A client of a router, in this role: where there are keys they have to be of it.
-pub(crate) async fn client(
+pub async fn client(
     config: &Config,
     role: Role,
     endpoint: &str,
     namespace: &str,
     name: &str,
-) -> Result<Arc<dyn Bus>, Complaint> {
+) -> Result<Arc<dyn Bus>, Diagnostic> {
     joining(config, role, endpoint, namespace, name, None).await
 }
 
 /// Refuses to go to another machine in clear where there are keys.
-fn not_in_clear(config: &Config, endpoint: &str) -> Result<(), Complaint> {
+fn not_in_clear(config: &Config, endpoint: &str) -> Result<(), Diagnostic> {
     if config.text(keys::SETTING).is_empty() || endpoint.starts_with(SECURE) || is_local(endpoint) {
         return Ok(());
     }
     let what = format!("`{endpoint}` goes to another machine in clear, although there are keys");
-    Err(Complaint::input(what, "connect to an endpoint that begins with quic/, or without keys: --keys ''"))
+    Err(Diagnostic::input(what, "connect to an endpoint that begins with quic/, or without keys: --keys ''"))
 }
 
 async fn joining(
@@ -354,13 +358,13 @@ async fn joining(
     namespace: &str,
     name: &str,
     patience: Option<Duration>,
-) -> Result<Arc<dyn Bus>, Complaint> {
+) -> Result<Arc<dyn Bus>, Diagnostic> {
     not_in_clear(config, endpoint)?;
     let keys = keys::of(config, role, endpoint)?;
     if keys.is_none() && endpoint.starts_with(SECURE) {
         let hint =
             format!("--keys names the folder of the role, such as keys/{role}; `socrates cluster keys` makes them");
-        return Err(Complaint::input(format!("`{endpoint}` needs keys"), hint));
+        return Err(Diagnostic::input(format!("`{endpoint}` needs keys"), hint));
     }
     let mut settings = ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint).credentials(keys);
     settings.patience = patience.unwrap_or(settings.patience);
@@ -369,7 +373,7 @@ async fn joining(
 }
 
 /// Turns SIGTERM, SIGINT and, for children of a supervisor, the end of standard input into a wish to leave.
-pub(crate) fn leave(tied: bool) -> watch::Receiver<Stop> {
+pub fn leave(tied: bool) -> watch::Receiver<Stop> {
     let (wish, shutdown) = watch::channel(Stop::Run);
     let wish = Arc::new(wish);
     if tied {
@@ -399,7 +403,7 @@ pub(crate) fn leave(tied: bool) -> watch::Receiver<Stop> {
 }
 
 /// Name of this machine.
-pub(crate) fn host() -> String {
+pub fn host() -> String {
     std::fs::read_to_string(Path::new("/proc/sys/kernel/hostname"))
         .map(|name| name.trim().to_owned())
         .unwrap_or_default()

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 
 /// A specification larger than this is not read.
@@ -12,11 +12,11 @@ const MAX_BYTES: u64 = 256 * 1024;
 
 /// Where specifications of one kind come in.
 #[derive(Debug)]
-pub(crate) struct Door {
+pub struct Door {
     /// What they specify, in one word.
     pub(crate) what: &'static str,
     /// Those that come with the program: name and text.
-    pub(crate) shipped: &'static [(&'static str, &'static str)],
+    pub shipped: &'static [(&'static str, &'static str)],
 }
 
 impl Door {
@@ -34,7 +34,7 @@ impl Door {
     ///
     /// # Errors
     /// Bad input: no such file, too large, not UTF-8, not TOML, a key that is not known or a value of another kind; with its line.
-    pub(crate) fn read<T: DeserializeOwned>(&self, from: &Path) -> Result<T, Complaint> {
+    pub(crate) fn read<T: DeserializeOwned>(&self, from: &Path) -> Result<T, Diagnostic> {
         let shown = from.display().to_string();
         let hint = format!("name a file, or one that comes with the program: {}", self.names());
         let text = match self.shipped.iter().find(|(name, _)| *name == shown) {
@@ -42,18 +42,18 @@ impl Door {
             None => files::text(from, MAX_BYTES, &hint)?,
         };
         toml::from_str(&text).map_err(|why| {
-            let mut complaint = Complaint::input(format!("the {} `{shown}` cannot be read", self.what), hint);
-            complaint.causes = why.to_string().lines().map(str::to_owned).collect();
-            complaint
+            let mut diagnostic = Diagnostic::input(format!("the {} `{shown}` cannot be read", self.what), hint);
+            diagnostic.causes = why.to_string().lines().map(str::to_owned).collect();
+            diagnostic
         })
     }
 
     /// Refuses a specification for these reasons, a line each.
-    pub(crate) fn refused(&self, from: &Path, problems: Vec<String>) -> Complaint {
+    pub(crate) fn refused(&self, from: &Path, problems: Vec<String>) -> Diagnostic {
         let what = format!("the {} `{}` cannot be done", self.what, from.display());
-        let mut complaint = Complaint::input(what, "correct these lines");
-        complaint.causes = problems;
-        complaint
+        let mut diagnostic = Diagnostic::input(what, "correct these lines");
+        diagnostic.causes = problems;
+        diagnostic
     }
 }
 

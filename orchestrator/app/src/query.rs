@@ -7,7 +7,7 @@ use std::str::FromStr;
 use serde_json::{Value, json};
 use socrates_stream::csv::{Row, Table, joined};
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
 use crate::index;
 use crate::output::Printer;
@@ -105,12 +105,12 @@ pub struct QueryOptions {
 ///
 /// # Errors
 /// A folder without one, or one that cannot be read.
-pub(crate) fn table(library: &Path) -> Result<Table, Complaint> {
+pub(crate) fn table(library: &Path) -> Result<Table, Diagnostic> {
     let path = library.join(index::FILE);
     let hint = "name a library; `socrates report FOLDER` writes the table of any folder of bundles";
     let text = files::text(&path, MAX_BYTES, hint)?;
     Table::read(&text).map_err(|why| {
-        Complaint::input(format!("`{}`: {why}", path.display()), "`socrates report FOLDER` writes it anew")
+        Diagnostic::input(format!("`{}`: {why}", path.display()), "`socrates report FOLDER` writes it anew")
     })
 }
 
@@ -118,7 +118,7 @@ pub(crate) fn table(library: &Path) -> Result<Table, Complaint> {
 ///
 /// # Errors
 /// A folder without a table, a table that cannot be read, a column that it lacks.
-pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Complaint> {
+pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Diagnostic> {
     let form = options.out.as_deref().map(Written::of).transpose()?;
     let table = table(&options.library)?;
     let place = |name: &str| {
@@ -132,7 +132,7 @@ pub fn query(talk: &Printer, options: &QueryOptions) -> Result<Code, Complaint> 
             } else {
                 format!("columns: {all}")
             };
-            Complaint::input(format!("the table has no column `{name}`"), hint)
+            Diagnostic::input(format!("the table has no column `{name}`"), hint)
         };
         table.column(name).ok_or_else(lacks)
     };
@@ -185,22 +185,22 @@ enum Written {
 }
 
 impl Written {
-    fn of(out: &Path) -> Result<Self, Complaint> {
+    fn of(out: &Path) -> Result<Self, Diagnostic> {
         match out.extension().and_then(|ending| ending.to_str()) {
             Some("csv") => Ok(Self::Csv),
             Some("parquet") if cfg!(feature = "parquet") => Ok(Self::Parquet),
-            Some("parquet") => Err(Complaint::input(
+            Some("parquet") => Err(Diagnostic::input(
                 format!("cannot write `{}`: this program was built without the feature `parquet`", out.display()),
                 "use `.csv`, or build it with `cargo build --release -p socrates --features parquet`",
             )),
-            _ => Err(Complaint::input(
+            _ => Err(Diagnostic::input(
                 format!("cannot write `{}`: its ending says no form of a table", out.display()),
                 "use `.csv` or `.parquet`",
             )),
         }
     }
 
-    fn write(self, out: &Path, table: &Table, shown: &[usize], rows: &[&Row]) -> Result<(), Complaint> {
+    fn write(self, out: &Path, table: &Table, shown: &[usize], rows: &[&Row]) -> Result<(), Diagnostic> {
         match self {
             Self::Csv => {
                 let lines = std::iter::once(&table.head).chain(rows.iter().copied());
@@ -213,13 +213,13 @@ impl Written {
 }
 
 #[cfg(feature = "parquet")]
-fn parquet(out: &Path, table: &Table, shown: &[usize], rows: &[&Row]) -> Result<(), Complaint> {
+fn parquet(out: &Path, table: &Table, shown: &[usize], rows: &[&Row]) -> Result<(), Diagnostic> {
     let columns: Vec<(usize, &str)> = shown.iter().filter_map(|at| Some((*at, table.head.cell(*at)?))).collect();
     crate::parquet_file::write(out, &columns, rows)
 }
 
 #[cfg(not(feature = "parquet"))]
-fn parquet(out: &Path, _: &Table, _: &[usize], _: &[&Row]) -> Result<(), Complaint> {
+fn parquet(out: &Path, _: &Table, _: &[usize], _: &[&Row]) -> Result<(), Diagnostic> {
     Written::of(out).map(|_| ())
 }
 

@@ -16,7 +16,7 @@ use socrates_model::{Location, Seeds};
 use socrates_offline::{Card, Unfit, catalog};
 
 use crate::cards::{find, fitting};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 use crate::progress::Progress;
 pub(crate) use outcome::Outcome;
@@ -63,12 +63,12 @@ pub(crate) struct Played {
 }
 
 /// The cards of these ids or letters; all of them where none is named.
-fn cards(ids: &[String]) -> Result<Vec<&'static Card>, Complaint> {
+fn cards(ids: &[String]) -> Result<Vec<&'static Card>, Diagnostic> {
     if ids.is_empty() { Ok(catalog().iter().collect()) } else { ids.iter().map(|id| find(id)).collect() }
 }
 
 /// Every place of the options: locations by name and random worlds, the shipped locations where neither is named.
-fn all_places(options: &RateOptions) -> Result<Vec<Place>, Complaint> {
+fn all_places(options: &RateOptions) -> Result<Vec<Place>, Diagnostic> {
     let Some(worlds) = &options.worlds else { return places(&options.locations) };
     let mut all = if options.locations.is_empty() { Vec::new() } else { places(&options.locations)? };
     all.extend(drawn(worlds, &options.kinds)?);
@@ -76,8 +76,8 @@ fn all_places(options: &RateOptions) -> Result<Vec<Place>, Complaint> {
 }
 
 /// The random worlds of these seeds and kinds, with a column for each kind.
-pub(crate) fn drawn(seeds: &Seeds, kinds: &[String]) -> Result<Vec<Place>, Complaint> {
-    let named = kinds.iter().map(|kind| crate::map::kind(kind)).collect::<Result<Vec<Kind>, Complaint>>()?;
+pub(crate) fn drawn(seeds: &Seeds, kinds: &[String]) -> Result<Vec<Place>, Diagnostic> {
+    let named = kinds.iter().map(|kind| crate::map::kind(kind)).collect::<Result<Vec<Kind>, Diagnostic>>()?;
     let kinds = if named.is_empty() { Kind::ALL.to_vec() } else { named };
     let mut places = Vec::new();
     // Seed by seed, so that few runs of a card already see every kind.
@@ -89,7 +89,7 @@ pub(crate) fn drawn(seeds: &Seeds, kinds: &[String]) -> Result<Vec<Place>, Compl
 }
 
 /// The locations of these names or folders, the shipped ones where none is named; a name that is there twice gets a number.
-pub(crate) fn places(names: &[String]) -> Result<Vec<Place>, Complaint> {
+pub(crate) fn places(names: &[String]) -> Result<Vec<Place>, Diagnostic> {
     let shipped: Vec<String> = socrates_maps::shipped::names().iter().map(|name| (*name).to_owned()).collect();
     let names = if names.is_empty() { &shipped } else { names };
     let mut places: Vec<Place> = Vec::new();
@@ -108,7 +108,7 @@ pub(crate) fn play(
     places: Vec<Place>,
     (seeds, each): (u64, bool),
     at: &mut dyn FnMut(usize, usize, &str),
-) -> Result<Played, Complaint> {
+) -> Result<Played, Diagnostic> {
     let (mut unfit, mut items) = (Vec::new(), Vec::new());
     for (number, card) in cards.iter().enumerate() {
         let mut fits = Vec::new();
@@ -132,7 +132,7 @@ pub(crate) fn play(
 ///
 /// # Errors
 /// A card or location that is not known, or cards that fit none of the locations.
-pub fn rate(talk: &Printer, options: &RateOptions) -> Result<(), Complaint> {
+pub fn rate(talk: &Printer, options: &RateOptions) -> Result<(), Diagnostic> {
     let cards = cards(&options.ids)?;
     let places = all_places(options)?;
     if !cards.iter().any(|card| places.iter().any(|place| card.fit(&place.location).is_ok())) {
@@ -154,19 +154,19 @@ pub fn rate(talk: &Printer, options: &RateOptions) -> Result<(), Complaint> {
 }
 
 /// What is wrong where no card fits any of the places.
-fn nothing_fits(cards: &[&'static Card], places: &[Place]) -> Complaint {
+fn nothing_fits(cards: &[&'static Card], places: &[Place]) -> Diagnostic {
     let ids: Vec<String> = cards.iter().map(|card| format!("`{}`", card.id)).collect();
     let found = cards.first().map_or_else(Vec::new, |card| fitting(card));
     let hint = format!("{} fits {}", ids.first().map_or("", String::as_str), found.join(", "));
-    let mut complaint = Complaint::input(format!("{} fits no location that was named", ids.join(", ")), hint);
+    let mut diagnostic = Diagnostic::input(format!("{} fits no location that was named", ids.join(", ")), hint);
     let reasons = cards.iter().flat_map(|card| {
         places.iter().filter_map(move |place| {
             let why = card.fit(&place.location).err()?;
             Some(format!("{} on {}: {why}", card.id, place.column))
         })
     });
-    complaint.causes = reasons.collect();
-    complaint
+    diagnostic.causes = reasons.collect();
+    diagnostic
 }
 
 #[cfg(test)]

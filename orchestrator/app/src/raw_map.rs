@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use socrates_annotate::{Annotation, Options};
 use socrates_draw::MapNote;
-use socrates_maps::{GRAPH, Kept, MAP};
+use socrates_maps::{Finding, GRAPH, Kept, MAP, findings};
 use socrates_model::{Fault, Location};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::words::plural;
 
@@ -51,10 +51,10 @@ fn file_in(folder: &Path) -> Option<PathBuf> {
 }
 
 /// The map file of a folder or a map file itself, whether or not a scene graph lies beside it.
-pub(crate) fn given(path: &Path) -> Result<PathBuf, Complaint> {
+pub(crate) fn given(path: &Path) -> Result<PathBuf, Diagnostic> {
     let file = if path.is_dir() { file_in(path) } else { path.is_file().then(|| path.to_path_buf()) };
     file.ok_or_else(|| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{}` is no map", path.display()),
             "give a map file of ROS (map.yaml beside its image), or a folder with one",
         )
@@ -65,9 +65,9 @@ pub(crate) fn given(path: &Path) -> Result<PathBuf, Complaint> {
 static FOUND: Kept<Result<Annotation, Vec<Fault>>> = Kept::new();
 
 /// Reads a map file and annotates it.
-pub(crate) fn annotated(file: &Path, options: &Options) -> Result<RawMap, Complaint> {
+pub(crate) fn annotated(file: &Path, options: &Options) -> Result<RawMap, Diagnostic> {
     let wrong = |what: &str, faults: &[Fault]| {
-        Complaint::faults(
+        Diagnostic::faults(
             format!("the map `{}` {what}", file.display()),
             faults,
             "`socrates explain CODE` says what to do; `socrates map annotate --help` lists what can be said about a map",
@@ -82,9 +82,33 @@ pub(crate) fn annotated(file: &Path, options: &Options) -> Result<RawMap, Compla
     let annotation = found.map_err(|faults| wrong("cannot be annotated", &faults))?;
     files.extend(socrates_annotate::files(&annotation, &raw.grid));
     let name = name(file);
-    let location = socrates_maps::parse(&files, &name)
-        .map_err(|faults| wrong("was annotated, and what was found is not usable: please report the map", &faults))?;
+    let location = checked(file, &files, &name)?;
     Ok(RawMap { location, files, annotation })
+}
+
+/// The location of a map's files and its annotation.
+///
+/// # Errors
+/// The problems that the check of locations finds in the annotation, each with its point on the map.
+fn checked(file: &Path, files: &BTreeMap<String, Vec<u8>>, name: &str) -> Result<Location, Diagnostic> {
+    socrates_maps::parse(files, name).map_err(|faults| {
+        let found = socrates_maps::draft(files, name).map_or_else(|_| Vec::new(), |it| findings(&it.location));
+        let point = |fault: &Fault| {
+            let same = |finding: &&Finding| finding.fault.code == fault.code && finding.fault.at == fault.at;
+            found.iter().find(same).and_then(|finding| finding.at)
+        };
+        let cause = |fault: &Fault| match point(fault) {
+            Some(at) => format!("{fault} (near x {:.2}, y {:.2} m on the map)", at.x, at.y),
+            None => fault.to_string(),
+        };
+        let (shown, given) = (file.display(), files::shell(file));
+        let count = plural(faults.len(), "problem");
+        let what = format!("the annotation of the map `{shown}` fails the check of locations: {count}");
+        let hint = format!(
+            "correct the map's image at these points; or leave that floor out: `socrates map annotate {given} --within CORNERS`; or draw the scene graph: `socrates map edit {given}`"
+        );
+        Diagnostic { causes: faults.iter().map(cause).collect(), ..Diagnostic::input(what, hint) }
+    })
 }
 
 /// What a location of a map file is called: its folder where the file is called `map`, else the file.
@@ -126,4 +150,42 @@ pub(crate) fn note(map: &RawMap, given: &str) -> String {
 /// The remarks for a picture.
 pub(crate) fn notes(annotation: &Annotation) -> Vec<MapNote> {
     annotation.remarks.iter().map(|remark| MapNote { at: remark.at, text: remark.text.clone() }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The files of a shipped map with its own annotation, and the map file that they are said to be of.
+    fn annotated_office() -> (BTreeMap<String, Vec<u8>>, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let shipped = socrates_maps::shipped::files("office").unwrap();
+        for name in ["map.yaml", "map.png"] {
+            std::fs::write(folder.path().join(name), &shipped[name]).unwrap();
+        }
+        let file = folder.path().join("map.yaml");
+        (annotated(&file, &Options::default()).unwrap().files, file)
+    }
+
+    #[test]
+    fn an_annotation_that_fails_the_check_is_refused_with_place_point_value_and_hint() {
+        let (mut files, file) = annotated_office();
+        assert!(checked(&file, &files, "office").is_ok());
+        let doors = String::from_utf8(files["location.toml"].clone()).unwrap();
+        // The first door ends 20 m away from where its wall is.
+        let (before, from) = doors.split_once("from = [").unwrap();
+        let (point, after) = from.split_once(']').unwrap();
+        let x: f64 = point.split(',').next().unwrap().trim().parse().unwrap();
+        let moved = format!("{before}from = [{:.3}, 0.0]{after}", x + 20.0);
+        files.insert("location.toml".to_owned(), moved.into_bytes());
+
+        let refused = checked(&file, &files, "office").unwrap_err();
+        assert!(refused.what.contains("map.yaml` fails the check of locations: "), "{}", refused.what);
+        let cause = &refused.causes[0];
+        for part in ["location.toml", "door `", "the door line is ", " m long; allowed: 0.3 to 8 m", "(near x "] {
+            assert!(cause.contains(part), "{part}: {cause}");
+        }
+        assert!(refused.hint.contains("socrates map edit") && refused.hint.contains("--within"), "{}", refused.hint);
+        assert!(!format!("{} {} {}", refused.what, refused.causes.join(" "), refused.hint).contains("report"));
+    }
 }

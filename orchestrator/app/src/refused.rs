@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// A request file that cannot be run, beside others that can.
@@ -11,7 +11,7 @@ pub(crate) struct Refused {
     /// The file.
     pub(crate) file: PathBuf,
     /// Why.
-    pub(crate) why: Complaint,
+    pub(crate) why: Diagnostic,
 }
 
 impl Refused {
@@ -19,14 +19,14 @@ impl Refused {
     ///
     /// # Errors
     /// When none can.
-    pub(crate) fn told(talk: &Printer, refused: &[Self], others: usize) -> Result<String, Complaint> {
+    pub(crate) fn told(talk: &Printer, refused: &[Self], others: usize) -> Result<String, Diagnostic> {
         let names: Vec<String> = refused.iter().map(|bad| format!("`{}`", bad.file.display())).collect();
         let all = refused.len() + others;
         let what = format!("{} of {all} requests cannot be run: {}", refused.len(), names.join(", "));
         if others == 0 {
-            let mut complaint = Complaint::input(what, "correct them; `socrates read FILE` looks at one alone");
-            complaint.causes = refused.iter().flat_map(Self::lines).collect();
-            return Err(complaint);
+            let mut diagnostic = Diagnostic::input(what, "correct them; `socrates read FILE` looks at one alone");
+            diagnostic.causes = refused.iter().flat_map(Self::lines).collect();
+            return Err(diagnostic);
         }
         for bad in refused {
             talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));

@@ -3,7 +3,7 @@
 mod bags;
 mod lines;
 mod options;
-pub(crate) mod tracks;
+pub mod tracks;
 
 pub use options::ScoreOptions;
 pub use tracks::{Group, group, point};
@@ -19,7 +19,7 @@ use socrates_simulation::driving::{Again, Nobody, Outside};
 use socrates_stream::csv::{RunChoice, Table, joined};
 
 use crate::bundle::{self, Bundle, RunEntry};
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
 use crate::in_process::{self, Made};
 use crate::output::Printer;
@@ -34,7 +34,7 @@ pub fn simulate(
     planner: Option<&PlannerName>,
     seed: Option<u64>,
     out: Option<&PathBuf>,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let bundle = bundle::read(dir)?;
     let mut wanted: Vec<Run> = bundle.manifest.runs.iter().map(RunEntry::run).collect();
     if planner.is_some() || seed.is_some() {
@@ -68,9 +68,9 @@ pub fn simulate(
 }
 
 /// One run of a bundle's scenario; its recording goes into a file where one is named, and is kept nowhere else.
-pub(crate) fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result<Written, Complaint> {
+pub fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result<Written, Diagnostic> {
     let scenario = ScenarioId::new(&bundle.manifest.scenario)
-        .map_err(|bad| Complaint::input(bad.to_string(), "the manifest was changed by hand or is damaged"))?;
+        .map_err(|bad| Diagnostic::input(bad.to_string(), "the manifest was changed by hand or is damaged"))?;
     let made =
         Made { proposal: bundle.proposal.clone(), paths: bundle.paths.clone(), behaviors: bundle.behaviors.clone() };
     let mut scribe = Scribe::new(path, Some(&bundle.location));
@@ -86,21 +86,21 @@ pub(crate) fn written(bundle: &Bundle, run: &Run, path: Option<&Path>) -> Result
     };
     let played = in_process::simulate_into(scene, made, run.id(&scenario), run, outside.as_mut(), &mut scribe);
     played.map_err(|faults| {
-        Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
+        Diagnostic::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
     })?;
     scribe.finish()
 }
 
 /// Another run than those of the bundle cannot be played where a driver outside would have to answer.
-fn not_driven(run: &Run) -> Complaint {
-    Complaint::input(
+fn not_driven(run: &Run) -> Diagnostic {
+    Diagnostic::input(
         format!("a driver outside drives in {run}, and its commands are not in the bundle"),
         "`socrates run BUNDLE/request.toml --driver COMMAND` asks it; the runs of the bundle itself need no driver",
     )
 }
 
 /// Scores a bundle again, one file of tracks, or a bag of ROS 2.
-pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
+pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Diagnostic> {
     let what = options.what.as_path();
     let location = options.location.as_deref().map(|name| load_location(name, Path::new("."))).transpose()?;
     let known = Known {
@@ -115,7 +115,7 @@ pub fn score(talk: &Printer, options: &ScoreOptions) -> Result<(), Complaint> {
     };
     let Some(scored) = tracks::at(what, &known)? else {
         if options.tells() {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 "a bundle knows its location, goal, radius and groups",
                 "these flags are for tracks of your own: name a CSV or an MCAP file, or a bag of ROS 2; the page of a bundle is its report.html",
             ));
@@ -163,7 +163,7 @@ fn text(table: &Table) -> String {
 }
 
 /// Writes the page of tracks and their metrics, and hands back where the page is.
-fn write_tracks(out: &Path, what: &Path, known: &Known, scored: &Scored) -> Result<PathBuf, Complaint> {
+fn write_tracks(out: &Path, what: &Path, known: &Known, scored: &Scored) -> Result<PathBuf, Diagnostic> {
     let row = |metric: &MetricValue| FigureRow {
         name: metric.id.clone(),
         value: in_words(metric),
@@ -194,7 +194,7 @@ fn write_tracks(out: &Path, what: &Path, known: &Known, scored: &Scored) -> Resu
     Ok(file)
 }
 
-fn score_bundle(talk: &Printer, dir: &Path) -> Result<(), Complaint> {
+fn score_bundle(talk: &Printer, dir: &Path) -> Result<(), Diagnostic> {
     let bundle = bundle::read(dir)?;
     let mut rows = Vec::new();
     let mut differ = 0;
@@ -242,18 +242,18 @@ fn score_bundle(talk: &Printer, dir: &Path) -> Result<(), Complaint> {
 }
 
 /// Results that are not the bundle's: the fault of whoever changed a file, else of the program.
-fn differs(bundle: &Bundle, what: &str) -> Complaint {
+fn differs(bundle: &Bundle, what: &str) -> Diagnostic {
     let changed = bundle::changed(bundle);
     if changed.is_empty() {
         let hint = "no file of the bundle was changed: another version of the program made it, or this one has a fault";
-        return Complaint::input(what, hint).with_code(Code::Ours);
+        return Diagnostic::input(what, hint).with_code(Code::Ours);
     }
-    let mut complaint = Complaint::input(
+    let mut diagnostic = Diagnostic::input(
         format!("{what}: files were changed after it was made"),
         "`socrates run BUNDLE/request.toml` makes a bundle of what they say now",
     );
-    complaint.causes = changed.iter().map(|name| bundle.dir.join(name).display().to_string()).collect();
-    complaint
+    diagnostic.causes = changed.iter().map(|name| bundle.dir.join(name).display().to_string()).collect();
+    diagnostic
 }
 
 /// Why metrics have no value, by id.

@@ -10,17 +10,17 @@ use socrates_model::job::Stage;
 
 use crate::batch;
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::layout;
 use crate::output::Printer;
 
 /// Writes the page of a bundle, or the page of a folder of bundles.
-pub fn report(talk: &Printer, what: &Path) -> Result<(), Complaint> {
+pub fn report(talk: &Printer, what: &Path) -> Result<(), Diagnostic> {
     if !bundle::is_bundle(what) {
         return batch::report(talk, what);
     }
     if let Some(archive) = bundle::archive(what) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` is packed, and its page is in it", archive.display()),
             format!("`tar --zstd -xf {}` makes a folder of it; `socrates open` does too", archive.display()),
         ));

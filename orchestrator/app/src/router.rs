@@ -7,7 +7,7 @@ use socrates_link::{Bus, Mode, ZenohConfig};
 use tempfile::TempDir;
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::folder;
 
 /// File in the work folder that tells `watch`, `status`, drivers and viewers where to connect, for its owner alone. Its lines:
@@ -28,7 +28,7 @@ pub(crate) struct Router {
 
 impl Router {
     /// Opens it, and names it in the work folder.
-    pub(crate) async fn open(work: &Path, config: &Config, namespace: &str) -> Result<Self, Complaint> {
+    pub(crate) async fn open(work: &Path, config: &Config, namespace: &str) -> Result<Self, Diagnostic> {
         if let Some((before, _)) = read_endpoint(work)
             && let Some(socket) = before.strip_prefix(SOCKET)
         {
@@ -40,20 +40,20 @@ impl Router {
         let shared = crate::process::shared_memory(config).root;
         let places = format!("{endpoint}\n{namespace}\n{}\n", shared.display());
         folder::write_private(&work.join(ENDPOINT_FILE), &places).map_err(|why| {
-            Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
+            Diagnostic::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
         })?;
         Ok(Self { bus, socket, endpoint })
     }
 }
 
-async fn listen(endpoint: &str, port: u64, namespace: &str) -> Result<Arc<dyn Bus>, Complaint> {
+async fn listen(endpoint: &str, port: u64, namespace: &str) -> Result<Arc<dyn Bus>, Diagnostic> {
     let mut config = ZenohConfig::new(Mode::Router, namespace, "supervisor").listen(endpoint);
     if port != 0 {
         config = config.listen(&format!("tcp/127.0.0.1:{port}"));
     }
     socrates_link::join(config).await.map_err(|why| {
         let hint = "set supervisor.port to 0 for none, or to a free one; `socrates doctor` checks this machine";
-        Complaint::input(format!("the bus of the run cannot be opened: {why}"), hint)
+        Diagnostic::input(format!("the bus of the run cannot be opened: {why}"), hint)
     })
 }
 

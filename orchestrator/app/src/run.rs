@@ -10,7 +10,7 @@ use socrates_store::Reader;
 use crate::bundle::{self, Bundle};
 use crate::conclude::Finished;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::history::PastJob;
 use crate::keep::Keep;
 use crate::many::Library;
@@ -30,10 +30,10 @@ use crate::{dry_run, layout, many, next, shard, stages, work};
 const DEMO: (&str, &str) = ("hospital", "elevator");
 
 /// Runs the shipped request.
-pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Result<Code, Complaint> {
+pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Result<Code, Diagnostic> {
     let requests = socrates_maps::shipped::requests(DEMO.0);
     let (name, text) = requests.into_iter().find(|(stem, _)| *stem == DEMO.1).ok_or_else(|| {
-        Complaint::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours)
+        Diagnostic::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours)
     })?;
     let prepared = prepare_text(name, text, "demo", Path::new("."), Some(options), config)?;
     single_or_batch(talk, config, options, vec![prepared]).await
@@ -41,7 +41,7 @@ pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Resu
 
 /// Prints how a request is read, and runs nothing; with `write`, puts what was read as a form under the text; with `passes`, prints first what
 /// each pass of the reader makes of the rough scenario, whoever reads it.
-pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool, passes: bool) -> Result<(), Complaint> {
+pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool, passes: bool) -> Result<(), Diagnostic> {
     let prepared = prepare(request, None, config)?;
     let rough = prepared.request.rough_scenario.as_deref().unwrap_or_default();
     let passes = passes.then(|| socrates_offline::passes(rough));
@@ -59,25 +59,25 @@ pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool, passes
 }
 
 /// Puts the form of the text at the end of the request file.
-fn write_form(talk: &Printer, file: &Path, prepared: &Prepared) -> Result<String, Complaint> {
+fn write_form(talk: &Printer, file: &Path, prepared: &Prepared) -> Result<String, Diagnostic> {
     let shown = file.display().to_string();
     if !prepared.request.form.is_empty() {
         let what = format!("the request `{shown}` states its people already");
-        return Err(Complaint::input(what, "correct its [[human]] tables, or take them out to write them anew"));
+        return Err(Diagnostic::input(what, "correct its [[human]] tables, or take them out to write them anew"));
     }
     if prepared.reading.humans.is_empty() {
         let what = format!("the request `{shown}` names nobody of whom a form could be written");
-        return Err(Complaint::input(what, "say in rough_scenario who is there; docs/form.md shows the tables"));
+        return Err(Diagnostic::input(what, "say in rough_scenario who is there; docs/form.md shows the tables"));
     }
     let form = socrates_offline::form_of(&prepared.request, &prepared.reading, &prepared.location);
     let text = crate::files::text(file, u64::MAX, "a request")?;
     let whole = format!("{}\n{form}", text.trim_end());
     // What is written must be a request, or it is not written.
     socrates_model::Request::of_toml(&whole, None).map_err(|problems| {
-        let mut complaint =
-            Complaint::input("the form of this text is no request", "state it by hand, see docs/form.md");
-        complaint.causes = problems.iter().map(|bad| bad.told(&shown)).collect();
-        complaint.with_code(Code::Ours)
+        let mut diagnostic =
+            Diagnostic::input("the form of this text is no request", "state it by hand, see docs/form.md");
+        diagnostic.causes = problems.iter().map(|bad| bad.told(&shown)).collect();
+        diagnostic.with_code(Code::Ours)
     })?;
     crate::files::write(file, whole.as_bytes())?;
     talk.line(&format!("wrote      {shown} · the form under its text; what it states wins over the text"));
@@ -90,7 +90,7 @@ pub async fn run(
     config: &Config,
     requests: &[PathBuf],
     options: &RunOptions,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     let (prepared, refused) = prepared_all(config, requests, options)?;
     if options.dry_run {
         checked(options, &prepared)?;
@@ -108,7 +108,7 @@ pub async fn build(
     config: &Config,
     requests: &[PathBuf],
     options: &RunOptions,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     if options.dry_run {
         return run(talk, config, requests, options).await;
     }
@@ -121,18 +121,18 @@ pub(crate) async fn library(
     config: &Config,
     requests: &[PathBuf],
     options: &RunOptions,
-) -> Result<Library, Complaint> {
+) -> Result<Library, Diagnostic> {
     let (prepared, refused) = prepared_all(config, requests, options)?;
     // That one scenario is kept or not is a question in a library.
     checked(&RunOptions { keep: None, ..options.clone() }, &prepared)?;
     if options.view {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "`--view` shows a scenario that is made alone",
             "`socrates view FOLDER` in another terminal shows the folder of a library",
         ));
     }
     if options.ask {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "`--ask` looks at a scenario while it is made alone",
             "`socrates run REQUEST --ask`",
         ));
@@ -145,7 +145,7 @@ pub(crate) fn prepared_all(
     config: &Config,
     requests: &[PathBuf],
     options: &RunOptions,
-) -> Result<(Vec<Prepared>, Vec<Refused>), Complaint> {
+) -> Result<(Vec<Prepared>, Vec<Refused>), Diagnostic> {
     let files = request_files(requests)?;
     let (mut prepared, mut refused) = (Vec::new(), Vec::new());
     for file in &files {
@@ -165,7 +165,7 @@ async fn made(
     options: &RunOptions,
     prepared: Vec<Prepared>,
     refused: &[Refused],
-) -> Result<Library, Complaint> {
+) -> Result<Library, Diagnostic> {
     if refused.is_empty() {
         return many::batch(talk, config, options, prepared, refused).await;
     }
@@ -176,7 +176,7 @@ async fn made(
 }
 
 /// Refuses options that do not fit the scenarios, and counts these.
-fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Complaint> {
+fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Diagnostic> {
     pace(&options.pace)?;
     if options.shard.is_some() {
         if options.ask {
@@ -188,19 +188,19 @@ fn checked(options: &RunOptions, prepared: &[Prepared]) -> Result<u64, Complaint
     }
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
     if options.keep.is_some() && count == 1 && options.shard.is_none() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "`--keep` says what a library of several scenarios keeps; one is asked for, and it is kept",
             "leave it out, or ask for more with `--variants`",
         ));
     }
     if options.ask && count != 1 {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`--ask` looks at one scenario; {count} are asked for"),
             "name one request, with `--variants 1`",
         ));
     }
     if options.view && count != 1 {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`--view` shows one scenario while it is made; {count} are asked for"),
             "without it, `socrates view FOLDER` in another terminal shows the folder of a library",
         ));
@@ -213,7 +213,7 @@ async fn single_or_batch(
     config: &Config,
     options: &RunOptions,
     prepared: Vec<Prepared>,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     let count = checked(options, &prepared)?;
     let mut prepared = prepared;
     match prepared.pop() {
@@ -226,14 +226,14 @@ async fn single_or_batch(
 }
 
 /// Checks a pace.
-fn pace(text: &str) -> Result<(), Complaint> {
+fn pace(text: &str) -> Result<(), Diagnostic> {
     if text == "max" || text.parse::<f64>().is_ok_and(|pace| pace.is_finite() && pace > 0.0) {
         return Ok(());
     }
-    Err(Complaint::input(format!("`--pace {text}` is no pace"), "`max`, or simulated seconds per second such as 1"))
+    Err(Diagnostic::input(format!("`--pace {text}` is no pace"), "`max`, or simulated seconds per second such as 1"))
 }
 
-async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared: Prepared) -> Result<Code, Complaint> {
+async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared: Prepared) -> Result<Code, Diagnostic> {
     let mut viewing = None;
     let made = one(talk, config, options, prepared, &mut viewing).await;
     match (viewing, &made) {
@@ -251,7 +251,7 @@ async fn one(
     options: &RunOptions,
     prepared: Prepared,
     viewing: &mut Option<Viewing>,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     let shipped = if socrates_maps::shipped::files(&prepared.request.location).is_some() { " (shipped)" } else { "" };
     talk.line(&format!(
         "location   {:<26}author  {}",
@@ -285,7 +285,7 @@ async fn one(
     let writing = {
         let (dir, work, id, prepared, seed) =
             (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
-        move || -> Result<Bundle, Complaint> {
+        move || -> Result<Bundle, Diagnostic> {
             let reader = Reader::open(&work::store(&work)).map_err(work::unread)?;
             Finished { dir: &dir, work: &work, id: &id, prepared: &prepared, seed, alone: true, keep: Keep::Folders }
                 .by_store(&reader)
@@ -296,10 +296,10 @@ async fn one(
     let making = Making { talk, config, options, work: &work, wanted: &[want] };
     let (mut made, outcome) = making.and(then).await?;
     let status = made.statuses.pop().ok_or_else(|| {
-        Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
+        Diagnostic::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
     })?;
     let outcome = outcome.unwrap_or_else(|broke| {
-        Err(Complaint::input(format!("the bundle could not be written: {broke}"), "").with_code(Code::Ours))
+        Err(Diagnostic::input(format!("the bundle could not be written: {broke}"), "").with_code(Code::Ours))
     });
     let past = made.history.of(&status.id);
     talk.line(&stages::line(past, status.result));
@@ -309,14 +309,14 @@ async fn one(
             drop(std::fs::remove_dir_all(&work));
             finish(talk, options, &prepared, &bundle, Some(past))
         }
-        Err(mut complaint) => {
-            if complaint.code != Code::Ours {
+        Err(mut diagnostic) => {
+            if diagnostic.code != Code::Ours {
                 place::end(&dir, status.result);
             }
-            complaint.result = Some(Box::new(
+            diagnostic.result = Some(Box::new(
                 json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": told(past), "metrics": {}, "reading": prepared.reading }),
             ));
-            return Err(complaint);
+            return Err(diagnostic);
         }
     };
     Ok(result)

@@ -5,7 +5,7 @@ use socrates_model::{Clause, ClauseRole};
 use socrates_offline::{Card, catalog};
 
 use crate::cards::{find, fitting, mark, places, request};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// Lists every scenario.
@@ -46,7 +46,7 @@ const fn weight(role: ClauseRole, must: bool) -> &'static str {
 }
 
 /// Shows the card of a scenario.
-pub async fn show(talk: &Printer, id: &str) -> Result<(), Complaint> {
+pub async fn show(talk: &Printer, id: &str) -> Result<(), Diagnostic> {
     let card = find(id)?;
     let sample = played(card).await;
     let words = |classes: &[socrates_model::PlaceClass]| {
@@ -190,8 +190,8 @@ mod tests {
     fn a_scenario_is_found_by_id_or_letter_and_others_are_named() {
         assert_eq!(find("a").unwrap().id, "frontal_approach");
         assert_eq!(find("queue").unwrap().id, "queue");
-        let complaint = find("quark").unwrap_err();
-        assert!(complaint.what.contains("`quark`") && complaint.hint.contains("queue"), "{complaint}");
+        let diagnostic = find("quark").unwrap_err();
+        assert!(diagnostic.what.contains("`quark`") && diagnostic.hint.contains("queue"), "{diagnostic}");
         assert_eq!(fitting(find("exiting_elevator").unwrap()), ["hospital"]);
     }
 }

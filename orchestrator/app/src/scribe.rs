@@ -5,13 +5,12 @@ use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use socrates_model::recording::RecordingHash;
-use socrates_model::{AgentState, Digest, Event, EventKind, Location, RecordingHeader, SimTime};
-use socrates_simulation::Onlooker;
+use socrates_model::{AgentState, Digest, Event, EventKind, Location, Onlooker, RecordingHeader, SimTime};
 use socrates_stream::StreamError;
 use socrates_stream::csv::AgentTable;
 use socrates_stream::mcap::Writer;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 
 /// Writes the recording of a run and the table of its agents, where they are wanted, and tells its recording hash.
@@ -24,14 +23,14 @@ pub(crate) struct Scribe<'a> {
     writer: Option<Writer<BufWriter<File>>>,
     table_path: Option<PathBuf>,
     table: Option<(BufWriter<File>, AgentTable)>,
-    broken: Option<Complaint>,
+    broken: Option<Diagnostic>,
     ticks: u64,
     contacts: usize,
 }
 
 /// What was written.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Written {
+pub struct Written {
     /// Time of the last tick, s.
     pub(crate) last_s: f64,
     /// Touches between agents.
@@ -63,7 +62,7 @@ impl<'a> Scribe<'a> {
     }
 
     /// Ends the files.
-    pub(crate) fn finish(self) -> Result<Written, Complaint> {
+    pub(crate) fn finish(self) -> Result<Written, Diagnostic> {
         if let Some(broken) = self.broken {
             return Err(broken);
         }
@@ -78,7 +77,7 @@ impl<'a> Scribe<'a> {
         Ok(Written { last_s, contacts: self.contacts, hash: self.hash.finish() })
     }
 
-    fn begin(&mut self, header: &RecordingHeader) -> Result<(), Complaint> {
+    fn begin(&mut self, header: &RecordingHeader) -> Result<(), Diagnostic> {
         if let Some(path) = &self.path {
             let file = created(path)?;
             self.writer = Some(Writer::begin(file, header, self.location).map_err(|why| unwritten(&why))?);
@@ -91,7 +90,7 @@ impl<'a> Scribe<'a> {
         Ok(())
     }
 
-    fn write(&mut self, states: &[AgentState], events: &[Event]) -> Result<(), Complaint> {
+    fn write(&mut self, states: &[AgentState], events: &[Event]) -> Result<(), Diagnostic> {
         if let Some(writer) = &mut self.writer {
             let written = writer.tick(states).and_then(|()| events.iter().try_for_each(|event| writer.event(event)));
             written.map_err(|why| unwritten(&why))?;
@@ -119,15 +118,15 @@ impl Onlooker for Scribe<'_> {
     }
 }
 
-fn created(path: &Path) -> Result<BufWriter<File>, Complaint> {
+fn created(path: &Path) -> Result<BufWriter<File>, Diagnostic> {
     files::write(path, b"")?;
     File::create(path).map(BufWriter::new).map_err(|why| cannot(path, &why))
 }
 
-fn cannot(path: &Path, why: &std::io::Error) -> Complaint {
-    Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+fn cannot(path: &Path, why: &std::io::Error) -> Diagnostic {
+    Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
 }
 
-fn unwritten(why: &StreamError) -> Complaint {
-    Complaint::input(why.to_string(), "--out chooses another folder")
+fn unwritten(why: &StreamError) -> Diagnostic {
+    Diagnostic::input(why.to_string(), "--out chooses another folder")
 }

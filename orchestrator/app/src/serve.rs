@@ -12,15 +12,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use socrates_kit::Cancel;
 use socrates_link::{Ask, Bus, keys};
-use socrates_model::{AgentState, Event, Location, PlannerName, RecordingHeader, Request, Run, ScenarioId};
-use socrates_simulation::Onlooker;
+use socrates_model::{AgentState, Event, Location, Onlooker, PlannerName, RecordingHeader, Request, Run, ScenarioId};
 use socrates_simulation::driving::{Drive, OverBus};
 use tokio::runtime::Handle;
 use tokio::task::JoinSet;
 
 use crate::bundle;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::folder::Hold;
 use crate::in_process::{self, Made};
 use crate::output::Printer;
@@ -77,11 +76,11 @@ struct Told {
 }
 
 /// Serves until it is stopped.
-pub async fn serve(talk: &Printer, config: &Config, options: &ServeOptions) -> Result<(), Complaint> {
+pub async fn serve(talk: &Printer, config: &Config, options: &ServeOptions) -> Result<(), Diagnostic> {
     let scenes = scenes(options, config).await?;
     let work = options.out.join(crate::place::WORK);
     std::fs::create_dir_all(&work).map_err(|why| {
-        Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
+        Diagnostic::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
     })?;
     let hold = Hold::take(&work)?;
     let mut signals = Signals::listen()?;
@@ -90,8 +89,8 @@ pub async fn serve(talk: &Printer, config: &Config, options: &ServeOptions) -> R
         Some(&config.text("simulation.drive")),
         Some(&config.number("simulation.drive_patience_s").to_string()),
     );
-    let drive = drive.map_err(|fault| Complaint::input(fault.message.to_string(), "see `simulation.drive`"))?;
-    let mut asks = router.bus.serve(keys::SERVE_RUN).await.map_err(|why| Complaint::resumes(why.to_string()))?;
+    let drive = drive.map_err(|fault| Diagnostic::input(fault.message.to_string(), "see `simulation.drive`"))?;
+    let mut asks = router.bus.serve(keys::SERVE_RUN).await.map_err(|why| Diagnostic::resumes(why.to_string()))?;
     for scene in &scenes {
         talk.line(&format!("scenario   {:<26}location  {}", scene.id.to_string(), scene.location.name));
     }
@@ -132,7 +131,7 @@ pub async fn serve(talk: &Printer, config: &Config, options: &ServeOptions) -> R
 }
 
 /// Everything that is served, made ready.
-async fn scenes(options: &ServeOptions, config: &Config) -> Result<Vec<Scene>, Complaint> {
+async fn scenes(options: &ServeOptions, config: &Config) -> Result<Vec<Scene>, Diagnostic> {
     let mut scenes: Vec<Scene> = Vec::new();
     for what in &options.what {
         if bundle::is_bundle(what) {
@@ -144,17 +143,17 @@ async fn scenes(options: &ServeOptions, config: &Config) -> Result<Vec<Scene>, C
             let made = in_process::author(&prepared.request, &prepared.reading, &prepared.location, options.seed);
             let made = made.await.map_err(|faults| {
                 let what = format!("`{}` cannot be made", file.display());
-                Complaint::faults(what, &faults, "`socrates run` of it says more; a bundle can be served as well")
+                Diagnostic::faults(what, &faults, "`socrates run` of it says more; a bundle can be served as well")
             })?;
             let id = ScenarioId::new(&prepared.name)
-                .map_err(|bad| Complaint::input(bad.to_string(), "name the file otherwise"))?;
+                .map_err(|bad| Diagnostic::input(bad.to_string(), "name the file otherwise"))?;
             scenes.push(Scene { id, request: prepared.request, location: prepared.location, made });
         }
     }
     let mut names: Vec<&ScenarioId> = scenes.iter().map(|scene| &scene.id).collect();
     names.sort();
     if let Some([twice, _]) = names.windows(2).find(|pair| matches!(pair, [a, b] if a == b)) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("two scenarios are called `{twice}`"),
             "drivers ask for a scenario by its name: rename a file",
         ));
@@ -162,10 +161,10 @@ async fn scenes(options: &ServeOptions, config: &Config) -> Result<Vec<Scene>, C
     Ok(scenes)
 }
 
-fn of_bundle(dir: &Path) -> Result<Scene, Complaint> {
+fn of_bundle(dir: &Path) -> Result<Scene, Diagnostic> {
     let read = bundle::read_some(dir, |_, _| false)?;
     let id = ScenarioId::new(&read.manifest.scenario)
-        .map_err(|bad| Complaint::input(bad.to_string(), "the manifest was changed by hand or is damaged"))?;
+        .map_err(|bad| Diagnostic::input(bad.to_string(), "the manifest was changed by hand or is damaged"))?;
     let made = Made { proposal: read.proposal, paths: read.paths, behaviors: read.behaviors };
     Ok(Scene { id, request: read.request, location: read.location, made })
 }

@@ -16,7 +16,7 @@ use crate::ask::Asking;
 use crate::bundler::Bundler;
 use crate::calls::{AWAY, status, submit};
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::folder::Hold;
 use crate::history::History;
 use crate::output::Printer;
@@ -30,11 +30,11 @@ use crate::work::{self, blobs, fetch, store};
 
 /// What was made.
 #[derive(Debug)]
-pub(crate) struct Made {
+pub struct Made {
     /// One status per scenario, in order of submission.
     pub(crate) statuses: Vec<ScenarioStatus>,
     /// Every revision and attempt of each scenario.
-    pub(crate) history: History,
+    pub history: History,
     blobs: LocalBlobs,
     /// Until the bundle is written, nobody else makes it.
     _hold: Hold,
@@ -42,7 +42,7 @@ pub(crate) struct Made {
 
 impl Made {
     /// An artifact from the work folder.
-    pub(crate) fn fetch(&self, digest: &Digest) -> Result<Vec<u8>, Complaint> {
+    pub(crate) fn fetch(&self, digest: &Digest) -> Result<Vec<u8>, Diagnostic> {
         fetch(&self.blobs, digest)
     }
 }
@@ -51,7 +51,7 @@ impl Made {
 const BATCH: &str = "run";
 
 /// What the store holds once its orchestrator has left.
-fn made(work: &Path, wanted: &[Wanted<'_>], hold: Hold) -> Result<Made, Complaint> {
+fn made(work: &Path, wanted: &[Wanted<'_>], hold: Hold) -> Result<Made, Diagnostic> {
     let rows = Reader::open(&store(work)).and_then(|reader| reader.all()).map_err(work::unread)?;
     let mut found: BTreeMap<ScenarioId, ScenarioStatus> =
         socrates_orchestrator::standing(rows.clone()).into_iter().map(|status| (status.id.clone(), status)).collect();
@@ -61,29 +61,37 @@ fn made(work: &Path, wanted: &[Wanted<'_>], hold: Hold) -> Result<Made, Complain
 
 /// What is made, and how. A work folder that holds a part of it already is resumed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Making<'a> {
+pub struct Making<'a> {
     /// Says how far it is.
-    pub(crate) talk: &'a Printer,
+    pub talk: &'a Printer,
     /// Configuration.
-    pub(crate) config: &'a Config,
+    pub config: &'a Config,
     /// Options of the run.
-    pub(crate) options: &'a RunOptions,
+    pub options: &'a RunOptions,
     /// Work folder.
-    pub(crate) work: &'a Path,
+    pub work: &'a Path,
     /// The scenarios.
-    pub(crate) wanted: &'a [Wanted<'a>],
+    pub wanted: &'a [Wanted<'a>],
 }
 
 impl Making<'_> {
     /// Makes the scenarios, at most so many `at_once`; each goes to the bundler, where there is one, as soon as it is done.
-    pub(crate) async fn all(&self, at_once: usize, bundler: Option<&mut Bundler>) -> Result<Made, Complaint> {
+    pub(crate) async fn all(&self, at_once: usize, bundler: Option<&mut Bundler>) -> Result<Made, Diagnostic> {
         let hold = Hold::take(self.work)?;
         self.carry_out(&hold, at_once, bundler, async {}).await?;
         made(self.work, self.wanted, hold)
     }
 
+    /// Makes the scenarios one after the other: nothing waits for anything else.
+    ///
+    /// # Errors
+    /// A work folder that is held, or processes that cannot be started or do not answer.
+    pub async fn in_turn(&self) -> Result<Made, Diagnostic> {
+        self.all(1, None).await
+    }
+
     /// Makes the scenarios one after the other. What is to be done with them goes on while the processes leave.
-    pub(crate) async fn and<T>(&self, then: impl Future<Output = T>) -> Result<(Made, T), Complaint> {
+    pub(crate) async fn and<T>(&self, then: impl Future<Output = T>) -> Result<(Made, T), Diagnostic> {
         let hold = Hold::take(self.work)?;
         let done = self.carry_out(&hold, 1, None, then).await?;
         Ok((made(self.work, self.wanted, hold)?, done))
@@ -91,7 +99,7 @@ impl Making<'_> {
 
     /// Makes the scenarios, each of which goes to the bundler as soon as it is done. The hold is for as long as bundles are
     /// written.
-    pub(crate) async fn bundled(&self, bundler: &mut Bundler) -> Result<Hold, Complaint> {
+    pub(crate) async fn bundled(&self, bundler: &mut Bundler) -> Result<Hold, Diagnostic> {
         let hold = Hold::take(self.work)?;
         // One of each request, then the next of each: whatever is there when it is stopped is of all kinds.
         let mut wanted = self.wanted.to_vec();
@@ -109,7 +117,7 @@ impl Making<'_> {
         at_once: usize,
         mut bundler: Option<&mut Bundler>,
         then: impl Future<Output = T>,
-    ) -> Result<T, Complaint> {
+    ) -> Result<T, Diagnostic> {
         let Self { talk, config, options, work, wanted } = self;
         let blobs = blobs(work);
         let specs = specs(wanted, config, options, &blobs)?;
@@ -152,13 +160,13 @@ async fn follow(
     before: u32,
     mut asking: Option<&mut Asking>,
     mut bundler: Option<&mut Bundler>,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
     let bus = supervisor.bus.clone();
     let mut notices = bus
         .subscribe(keys::EVENTS, 4096, Overflow::DropOldest)
         .await
-        .map_err(|why| Complaint::resumes(why.to_string()))?;
+        .map_err(|why| Diagnostic::resumes(why.to_string()))?;
     for spec in &specs {
         tracing::info!(scenario = %spec.id, trace_id = trace_of(BATCH, spec).trace_id(), "a scenario is handed in");
     }
@@ -183,12 +191,12 @@ async fn follow(
                     passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state.name(), envelope.body.remark));
                 }
             },
-            complaint = supervisor.gave_up() => {
+            diagnostic = supervisor.gave_up() => {
                 // A folder that is gone is the reason for whatever else its processes complain of.
                 hold.check()?;
-                return Err(complaint);
+                return Err(diagnostic);
             }
-            complaint = left(&mut asking) => return Err(complaint),
+            diagnostic = left(&mut asking) => return Err(diagnostic),
             _ = signals.interrupt.recv() => if !looking || !talk.live {
                 return Err(stopped());
             },
@@ -215,7 +223,7 @@ async fn follow(
                 }
             }
             Err(why) if last_heard.elapsed() > AWAY => {
-                return Err(Complaint::resumes(format!("the orchestrator does not answer: {why}")));
+                return Err(Diagnostic::resumes(format!("the orchestrator does not answer: {why}")));
             }
             Err(_) => {}
         }
@@ -238,7 +246,7 @@ fn passing(talk: &Printer, asking: Option<&Asking>, text: &str) {
 }
 
 /// Ends when the person who looks leaves; never where nobody looks.
-async fn left(asking: &mut Option<&mut Asking>) -> Complaint {
+async fn left(asking: &mut Option<&mut Asking>) -> Diagnostic {
     match asking {
         Some(asking) => asking.left().await,
         None => std::future::pending().await,

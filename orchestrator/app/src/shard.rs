@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Shards of one batch, at most: as many as the largest job array that clusters commonly allow.
 const MOST: u32 = 100_000;
@@ -93,8 +93,8 @@ impl From<Shard> for String {
 }
 
 /// What a shard cannot be asked for.
-pub(crate) fn refused(option: &str, why: &str) -> Complaint {
-    Complaint::input(format!("`{option}` does not go with `--shard`: {why}"), "leave one of them out")
+pub(crate) fn refused(option: &str, why: &str) -> Diagnostic {
+    Diagnostic::input(format!("`{option}` does not go with `--shard`: {why}"), "leave one of them out")
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use socrates_model::{JobState, ScenarioEnd};
 use socrates_store::Reader;
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files::shell;
 use crate::history::History;
 use crate::output::Printer;
@@ -251,7 +251,7 @@ pub async fn status(
     what: &str,
     batch: Option<&str>,
     listed: Listed,
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     let folder = Path::new(what);
     let wish = Wish { what, batch: batch.unwrap_or_default(), listed };
     let standing =
@@ -283,7 +283,7 @@ impl Wish<'_> {
     }
 
     /// Refuses a batch that is not there.
-    fn check(self, reply: &StatusReply) -> Result<(), Complaint> {
+    fn check(self, reply: &StatusReply) -> Result<(), Diagnostic> {
         if self.batch.is_empty() || reply.total > 0 {
             return Ok(());
         }
@@ -292,13 +292,13 @@ impl Wish<'_> {
     }
 }
 
-fn no_batch(name: &str, there: &[String]) -> Complaint {
+fn no_batch(name: &str, there: &[String]) -> Diagnostic {
     let there = if there.is_empty() { "none is there".to_owned() } else { format!("there are: {}", there.join(", ")) };
-    Complaint::input(format!("there is no batch `{name}`"), there)
+    Diagnostic::input(format!("there is no batch `{name}`"), there)
 }
 
 /// What the orchestrator at an endpoint says.
-async fn of_endpoint(config: &Config, wish: Wish<'_>) -> Result<Standing, Complaint> {
+async fn of_endpoint(config: &Config, wish: Wish<'_>) -> Result<Standing, Diagnostic> {
     let Wish { what, batch, listed } = wish;
     let (address, namespace) = endpoint(what).ok_or_else(|| nothing(what))?;
     let bus = process::looker(config, &address, &namespace, "watch").await?;
@@ -325,11 +325,11 @@ async fn of_endpoint(config: &Config, wish: Wish<'_>) -> Result<Standing, Compla
 }
 
 /// What lies in a folder: a bundle, a library, something that is being made, or several of them.
-async fn of_folder(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Standing, Complaint> {
+async fn of_folder(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Standing, Diagnostic> {
     let Wish { what, batch, .. } = wish;
     if !batch.is_empty() {
         let hint = "name the endpoint of the orchestrator, such as tcp/127.0.0.1:7447@main";
-        return Err(Complaint::input(format!("`{what}` is a folder, and batches are of a cluster"), hint));
+        return Err(Diagnostic::input(format!("`{what}` is a folder, and batches are of a cluster"), hint));
     }
     if let Some(rows) = made(folder) {
         return Ok(Standing::of_rows(what, Phase::Finished, rows));
@@ -339,7 +339,7 @@ async fn of_folder(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Sta
     }
     // A folder of bundles, perhaps with some that are not finished.
     let mut below: Vec<_> = std::fs::read_dir(folder)
-        .map_err(|why| Complaint::input(format!("cannot read `{what}`: {why}"), "name a folder"))?
+        .map_err(|why| Diagnostic::input(format!("cannot read `{what}`: {why}"), "name a folder"))?
         .filter_map(Result::ok)
         .map(|entry| entry.path())
         .filter(|dir| dir.is_dir())
@@ -380,7 +380,7 @@ fn made(folder: &Path) -> Option<Vec<Row>> {
 }
 
 /// A folder with a job store: its rows, and what the orchestrator says where one works.
-async fn being_made(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Standing, Complaint> {
+async fn being_made(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<Standing, Diagnostic> {
     let rows = from_store(folder, wish.listed != Listed::None)?;
     let ended = place::ended(folder).is_some();
     let standing = Standing::of_rows(wish.what, if ended { Phase::Finished } else { Phase::Stopped }, rows);
@@ -405,13 +405,13 @@ async fn being_made(config: &Config, wish: Wish<'_>, folder: &Path) -> Result<St
 }
 
 /// The scenarios of the job store of a folder, with what they did where that is wanted or there is only one.
-fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Complaint> {
+fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Diagnostic> {
     let store = work::store(&folder.join(place::WORK));
     if !store.is_file() {
         return Ok(Vec::new());
     }
     let unread = |why: socrates_store::StoreError| {
-        Complaint::input(format!("cannot read `{}`: {why}", store.display()), "the same command again resumes")
+        Diagnostic::input(format!("cannot read `{}`: {why}", store.display()), "the same command again resumes")
     };
     let reader = Reader::open(&store).map_err(unread)?;
     let standings = reader.standings(0, u64::MAX).map_err(unread)?;
@@ -436,12 +436,12 @@ fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Complaint> {
     Ok(history.ends.iter().map(row).collect())
 }
 
-fn nothing(what: &str) -> Complaint {
+fn nothing(what: &str) -> Diagnostic {
     let path = Path::new(what);
     if path.is_dir() {
         return batch::none(path);
     }
-    Complaint::input(
+    Diagnostic::input(
         format!("nothing is made, or being made, in `{what}`"),
         "name a bundle, a library, or an endpoint such as tcp/127.0.0.1:7447@main",
     )

@@ -7,7 +7,7 @@ use socrates_model::job::Stage;
 use socrates_model::wire::{Chosen, Left, Part, Steer, Steered};
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::standing::part_words;
 use crate::words::plural;
@@ -61,7 +61,7 @@ pub async fn steer(
     options: &SteerOptions,
     act: Act,
     whom: &Whom,
-) -> Result<Code, Complaint> {
+) -> Result<Code, Diagnostic> {
     let wishes = wishes(act, whom)?;
     let bus = process::looker(config, &options.connect, &options.namespace, "steer").await?;
     let mut all = Steered::default();
@@ -77,7 +77,7 @@ pub async fn steer(
 }
 
 /// Does one thing over a bus that is connected already, and says what came of it.
-pub(crate) async fn over(bus: &dyn Bus, act: Act, whom: &Whom) -> Result<Vec<String>, Complaint> {
+pub(crate) async fn over(bus: &dyn Bus, act: Act, whom: &Whom) -> Result<Vec<String>, Diagnostic> {
     let mut all = Steered::default();
     let wishes = wishes(act, whom)?;
     for wish in &wishes {
@@ -87,17 +87,18 @@ pub(crate) async fn over(bus: &dyn Bus, act: Act, whom: &Whom) -> Result<Vec<Str
 }
 
 /// The messages of a wish.
-fn wishes(act: Act, whom: &Whom) -> Result<Vec<Steer>, Complaint> {
-    let part = || -> Result<Part, Complaint> {
+fn wishes(act: Act, whom: &Whom) -> Result<Vec<Steer>, Diagnostic> {
+    let part = || -> Result<Part, Diagnostic> {
         match (&whom.stage, &whom.batch) {
-            (Some(_), Some(_)) => Err(Complaint::input(
+            (Some(_), Some(_)) => Err(Diagnostic::input(
                 "both a stage and a batch are named",
                 "name one of them; a second call names the other",
             )),
             (Some(name), None) => {
                 let stages = Stage::WORKERS.map(Stage::name).join(", ");
-                let bad =
-                    |_bad| Complaint::input(format!("there is no stage `{name}`"), format!("stages: {stages}, review"));
+                let bad = |_bad| {
+                    Diagnostic::input(format!("there is no stage `{name}`"), format!("stages: {stages}, review"))
+                };
                 name.parse().map(Part::Stage).map_err(bad)
             }
             (None, Some(batch)) => Ok(Part::Batch(named(batch)?)),
@@ -113,30 +114,34 @@ fn wishes(act: Act, whom: &Whom) -> Result<Vec<Steer>, Complaint> {
 }
 
 /// A batch by its name: an empty one would stand for everything.
-fn named(batch: &str) -> Result<String, Complaint> {
+fn named(batch: &str) -> Result<String, Diagnostic> {
     if batch.is_empty() {
-        return Err(Complaint::input("the name of the batch is empty", "`socrates status ENDPOINT` lists the batches"));
+        return Err(Diagnostic::input(
+            "the name of the batch is empty",
+            "`socrates status ENDPOINT` lists the batches",
+        ));
     }
     Ok(batch.to_owned())
 }
 
-fn chosen(whom: &Whom) -> Result<Vec<Chosen>, Complaint> {
+fn chosen(whom: &Whom) -> Result<Vec<Chosen>, Diagnostic> {
     match (&whom.batch, whom.dead, &whom.scenarios[..]) {
         (Some(batch), false, []) => Ok(vec![Chosen::Batch(named(batch)?)]),
         (None, true, []) => Ok(vec![Chosen::All]),
         (None, false, [_, ..]) => {
             let id = |name: &String| {
                 let hint = "`socrates status --all ENDPOINT` lists the scenarios";
-                ScenarioId::new(name).map_err(|bad| Complaint::input(bad.to_string(), hint))
+                ScenarioId::new(name).map_err(|bad| Diagnostic::input(bad.to_string(), hint))
             };
             let ids = whom.scenarios.iter().map(id).collect::<Result<Vec<_>, _>>()?;
             Ok(ids.chunks(AT_ONCE).map(|some| Chosen::Scenarios(some.to_vec())).collect())
         }
-        (None, false, []) => {
-            Err(Complaint::input("it is not said which scenarios are meant", "name scenarios, or a batch with --batch"))
-        }
+        (None, false, []) => Err(Diagnostic::input(
+            "it is not said which scenarios are meant",
+            "name scenarios, or a batch with --batch",
+        )),
         (Some(_), true, _) | (Some(_), _, [_, ..]) | (None, true, [_, ..]) => {
-            Err(Complaint::input("scenarios are named in more than one way", "name scenarios, or --batch, or --dead"))
+            Err(Diagnostic::input("scenarios are named in more than one way", "name scenarios, or --batch, or --dead"))
         }
     }
 }

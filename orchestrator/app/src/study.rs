@@ -17,7 +17,7 @@ use socrates_study::analyze::{Declared, analyze as analyzed, results_csv};
 use socrates_study::design::Design;
 use socrates_study::instrument::Instrument;
 use socrates_study::plan::{Ask, STUDIES, orders, pay, power, raters, smallest_found};
-use socrates_study::rating::Ratings;
+use socrates_study::rating::{Origin, Ratings};
 use socrates_study::read::{
     Codebook, Format, Pseudonyms, format_of, jspsych, limesurvey, own, participants_csv, prolific, qualtrics,
     ratings_csv, ratings_of_csv,
@@ -29,7 +29,7 @@ pub use self::build::{BuildOptions, Clips, build};
 pub use self::correlate::{CorrelateOptions, correlate};
 pub use self::new::{NewOptions, new};
 pub use self::serve::{ServeOptions, serve};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 
@@ -110,21 +110,21 @@ pub struct AnalyzeOptions {
     pub preregistration: Option<PathBuf>,
 }
 
-fn bad(why: &Problem) -> Complaint {
-    Complaint::input(why.told(), why.hint.clone())
+fn bad(why: &Problem) -> Diagnostic {
+    Diagnostic::input(why.told(), why.hint.clone())
 }
 
 fn name(path: &Path) -> String {
     path.display().to_string()
 }
 
-fn design(path: &Path) -> Result<Design, Complaint> {
+fn design(path: &Path) -> Result<Design, Diagnostic> {
     let text = files::text(path, MAX_STUDY, "a study file; docs/study.md shows one")?;
     Design::parse(&text, &name(path)).map_err(|why| bad(&why))
 }
 
 /// Does `study instruments`.
-pub fn instruments(talk: &Printer, only: Option<&str>) -> Result<(), Complaint> {
+pub fn instruments(talk: &Printer, only: Option<&str>) -> Result<(), Diagnostic> {
     let all = match only {
         Some(id) => vec![Instrument::named(id, "study instruments").map_err(|why| bad(&why))?],
         None => Instrument::shipped().map_err(|why| bad(&why))?,
@@ -161,17 +161,17 @@ pub fn instruments(talk: &Printer, only: Option<&str>) -> Result<(), Complaint> 
 }
 
 /// Does `study plan`.
-pub fn plan(talk: &Printer, options: PlanOptions) -> Result<(), Complaint> {
+pub fn plan(talk: &Printer, options: PlanOptions) -> Result<(), Diagnostic> {
     let PlanOptions { planners, people, effect, scenarios, items, length, hourly, seed } = options;
     if !(2..=8).contains(&planners) || !(1..=10_000).contains(&people) || scenarios == 0 || items == 0 {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("{planners} planners, {people} people, {scenarios} scenarios, {items} items"),
             "2 to 8 planners, 1 to 10000 people, at least one scenario and item",
         ));
     }
     let sound = [effect, length, hourly].iter().all(|value| value.is_finite() && (0.0..=10_000.0).contains(value));
     if !sound || effect > 10.0 {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("effect {effect}, length {length} s, {hourly} an hour"),
             "an effect of 0 to 10 log odds; the others are not negative",
         ));
@@ -190,7 +190,7 @@ pub fn plan(talk: &Printer, options: PlanOptions) -> Result<(), Complaint> {
         of.pair * 100.0
     );
     if people != below {
-        let mut why = Complaint::input(
+        let mut why = Diagnostic::input(
             format!("{people} people are no multiple of the {count} orders of {planners} planners"),
             if below == 0 { format!("--people {above}") } else { format!("--people {below} or --people {above}") },
         );
@@ -233,7 +233,7 @@ pub fn plan(talk: &Printer, options: PlanOptions) -> Result<(), Complaint> {
 }
 
 /// Does `study preregister`.
-pub fn preregister(talk: &Printer, study: &Path, out: &Path) -> Result<(), Complaint> {
+pub fn preregister(talk: &Printer, study: &Path, out: &Path) -> Result<(), Diagnostic> {
     let design = design(study)?;
     files::write(out, words::preregistration(&design).as_bytes())?;
     talk.line(&format!("wrote      {}", out.display()));
@@ -243,14 +243,14 @@ pub fn preregister(talk: &Printer, study: &Path, out: &Path) -> Result<(), Compl
 }
 
 /// Does `study simulate`.
-pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complaint> {
+pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Diagnostic> {
     let design = design(&options.design)?;
     let people = options.people.unwrap_or(design.participants);
     let effects = if options.effects.is_empty() { vec![0.0; design.planners.len()] } else { options.effects.clone() };
     let sound =
         effects.iter().all(|one| one.is_finite() && one.abs() <= 10.0) && (0.0..=1.0).contains(&options.skipped);
     if effects.len() != design.planners.len() || !sound || people == 0 || people > 10_000 || options.careless > people {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("effects {effects:?}, {people} people, {} careless, {} skipped", options.careless, options.skipped),
             format!("an effect for each of {}; 1 to 10000 people; a share of 0 to 1", design.planners.join(", ")),
         ));
@@ -274,7 +274,7 @@ pub fn simulate(talk: &Printer, options: &SimulateOptions) -> Result<(), Complai
 }
 
 /// The key of the names: read, or made by the system's chance and kept.
-fn key(talk: &Printer, path: &Path) -> Result<Pseudonyms, Complaint> {
+fn key(talk: &Printer, path: &Path) -> Result<Pseudonyms, Diagnostic> {
     use std::io::Read as _;
     let hint = "--key names another file; it holds 64 hexadecimal digits";
     if path.exists() {
@@ -283,13 +283,13 @@ fn key(talk: &Printer, path: &Path) -> Result<Pseudonyms, Complaint> {
         let pair = |at: usize| text.get(2 * at..2 * at + 2).and_then(|two| u8::from_str_radix(two, 16).ok());
         let bytes: Option<Vec<u8>> = (0..32).map(pair).collect();
         let bytes = bytes.filter(|_| text.len() == 64).and_then(|bytes| <[u8; 32]>::try_from(bytes).ok());
-        let wrong = || Complaint::input(format!("`{}` holds no key", path.display()), hint);
+        let wrong = || Diagnostic::input(format!("`{}` holds no key", path.display()), hint);
         return Ok(Pseudonyms { key: bytes.ok_or_else(wrong)? });
     }
     let mut key = [0; 32];
     std::fs::File::open("/dev/urandom")
         .and_then(|mut chance| chance.read_exact(&mut key))
-        .map_err(|why| Complaint::input(format!("no key can be made: {why}"), hint))?;
+        .map_err(|why| Diagnostic::input(format!("no key can be made: {why}"), hint))?;
     let text: String = key.iter().map(|byte| format!("{byte:02x}")).collect();
     files::write(path, format!("{text}\n").as_bytes())?;
     talk.line(&format!(
@@ -300,7 +300,7 @@ fn key(talk: &Printer, path: &Path) -> Result<Pseudonyms, Complaint> {
 }
 
 /// Does `study read`.
-pub fn read(talk: &Printer, options: &ReadOptions) -> Result<(), Complaint> {
+pub fn read(talk: &Printer, options: &ReadOptions) -> Result<(), Diagnostic> {
     let design = design(&options.design)?;
     let book = match &options.codebook {
         None => Codebook::default(),
@@ -310,7 +310,7 @@ pub fn read(talk: &Printer, options: &ReadOptions) -> Result<(), Complaint> {
         }
     };
     let texts = options.files.iter().map(|path| Ok((name(path), files::text(path, MAX_ANSWERS, "a file of answers")?)));
-    let texts = texts.collect::<Result<Vec<_>, Complaint>>()?;
+    let texts = texts.collect::<Result<Vec<_>, Diagnostic>>()?;
     let names = key(talk, &options.key)?;
     let mut parts = Vec::new();
     for (file, text) in &texts {
@@ -331,17 +331,28 @@ pub fn read(talk: &Printer, options: &ReadOptions) -> Result<(), Complaint> {
         }
     }
     files::write(&options.out.join("ratings.csv"), ratings_csv(&all, &design, &|_| Vec::new()).as_bytes())?;
-    files::write(&options.out.join("participants.csv"), participants_csv(&all.participants).as_bytes())?;
+    files::write(&options.out.join("participants.csv"), participants_csv(&all).as_bytes())?;
     let given = all.rows.iter().filter(|row| row.rating.points().is_some()).count();
     let (people, missing) = (all.participants.len(), all.rows.len() - given);
-    talk.line(&format!("read       {people} people, {given} ratings, {missing} missing"));
+    let shown = words::people(people, all.origin);
+    talk.line(&format!("read       {shown}, {given} ratings, {missing} missing"));
+    warn_of(talk, all.origin);
     talk.line(&format!("tables     {}", options.out.display()));
-    talk.result(&json!({ "out": options.out, "people": people, "ratings": given, "missing": missing }));
+    talk.result(
+        &json!({ "out": options.out, "people": people, "ratings": given, "missing": missing, "simulated": all.origin }),
+    );
     Ok(())
 }
 
+/// Warns of simulated answers.
+fn warn_of(talk: &Printer, origin: Origin) {
+    if origin.is_simulated() {
+        talk.warn(Origin::MARK);
+    }
+}
+
 /// The ratings of a folder of tables, or of a table.
-fn rated(answers: &Path, design: &Design) -> Result<Ratings, Complaint> {
+fn rated(answers: &Path, design: &Design) -> Result<Ratings, Diagnostic> {
     let is_folder = answers.is_dir();
     let ratings = if is_folder { answers.join("ratings.csv") } else { answers.to_path_buf() };
     let text = files::text(
@@ -360,7 +371,7 @@ fn rated(answers: &Path, design: &Design) -> Result<Ratings, Complaint> {
 }
 
 /// Does `study analyze`.
-pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint> {
+pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Diagnostic> {
     let design = design(&options.design)?;
     let out = &options.out;
     let declared = match &options.preregistration {
@@ -369,7 +380,7 @@ pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint
             let text = files::text(path, MAX_STUDY, "the text that `study preregister` wrote")?;
             let digest = words::registered_digest(&text).ok_or_else(|| {
                 let what = format!("`{}` holds no digest of a study file", path.display());
-                Complaint::input(what, "`study preregister STUDY` writes the text; keep its line with the digest")
+                Diagnostic::input(what, "`study preregister STUDY` writes the text; keep its line with the digest")
             })?;
             if digest == design.digest { Declared::Before } else { Declared::Changed }
         }
@@ -380,11 +391,11 @@ pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint
     let results = analyzed(&ratings, &design, declared);
     let broken = |person: &str| results.excluded.get(person).cloned().unwrap_or_default();
     let whole = serde_json::to_string_pretty(&results).map_err(|why| {
-        Complaint::input(format!("results cannot be written: {why}"), "").with_code(crate::exit::Code::Ours)
+        Diagnostic::input(format!("results cannot be written: {why}"), "").with_code(crate::exit::Code::Ours)
     })?;
     let texts = [
         ("ratings.csv", ratings_csv(&ratings, &design, &broken)),
-        ("participants.csv", participants_csv(&ratings.participants)),
+        ("participants.csv", participants_csv(&ratings)),
         ("results.csv", results_csv(&results)),
         ("results.json", whole),
         ("planners.txt", design.planners.iter().map(|planner| format!("{planner}\n")).collect()),
@@ -396,7 +407,9 @@ pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint
     for (file, text) in &texts {
         files::write(&out.join(file), text.as_bytes())?;
     }
-    talk.line(&format!("answers    {} people, {} left out by declared rules", results.people, results.excluded.len()));
+    let shown = words::people(results.people, results.origin);
+    talk.line(&format!("answers    {shown}, {} left out by declared rules", results.excluded.len()));
+    warn_of(talk, results.origin);
     talk.line(&format!("declared   {}", words::standing(declared)));
     for one in &results.findings {
         let kind = if one.declared { "declared" } else { "exploratory" };
@@ -411,7 +424,7 @@ pub fn analyze(talk: &Printer, options: &AnalyzeOptions) -> Result<(), Complaint
     talk.line(&format!("look       {}", out.join("report.html").display()));
     talk.result(
         &json!({ "out": out, "people": results.people, "excluded": results.excluded, "declared": results.declared,
-        "findings": results.findings, "digest": results.digest }),
+        "findings": results.findings, "digest": results.digest, "simulated": results.origin }),
     );
     Ok(())
 }

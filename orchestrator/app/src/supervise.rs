@@ -15,7 +15,7 @@ use tokio::sync::mpsc;
 use crate::config::Config;
 use crate::crew::{Crew, Member, ours};
 use crate::driver_process::DriverCommand;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::logs;
 use crate::router::{ENDPOINT_FILE, Router, SOCKET, read_endpoint};
 
@@ -31,7 +31,7 @@ pub(crate) struct Supervisor {
     _socket: TempDir,
     workers: Crew,
     orchestrator: Crew,
-    gave_up: mpsc::Receiver<Complaint>,
+    gave_up: mpsc::Receiver<Diagnostic>,
 }
 
 impl Supervisor {
@@ -41,7 +41,7 @@ impl Supervisor {
         config: &Config,
         simulations: u32,
         driven_by: Option<&str>,
-    ) -> Result<Self, Complaint> {
+    ) -> Result<Self, Diagnostic> {
         let namespace = "run";
         logs::keep(config, &logs::file(work, "supervisor"));
         let Router { bus, socket, endpoint } = Router::open(work, config, namespace).await?;
@@ -83,9 +83,9 @@ impl Supervisor {
     }
 
     /// Why a child cannot be kept alive, once that is so.
-    pub(crate) async fn gave_up(&mut self) -> Complaint {
+    pub(crate) async fn gave_up(&mut self) -> Diagnostic {
         match self.gave_up.recv().await {
-            Some(complaint) => complaint,
+            Some(diagnostic) => diagnostic,
             None => ours("every process has ended"),
         }
     }
@@ -109,7 +109,7 @@ fn roles(
     namespace: &str,
     simulations: u32,
     config: &Config,
-) -> Result<Vec<Member>, Complaint> {
+) -> Result<Vec<Member>, Diagnostic> {
     let text = |path: PathBuf| path.display().to_string();
     let role = |name: &str, own: &[String], first: Vec<String>| {
         let at = ["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned);
@@ -125,8 +125,8 @@ fn roles(
             let (blobs, spool) = (text(work.join("blobs")), text(work.join("spool").join(&name)));
             let log = text(logs::file(work, &name));
             let words =
-                ["worker", stage.name(), "--blobs", &blobs, "--spool", &spool, "--log-file", &log].map(str::to_owned);
-            roles.push(role(&name, &words, Vec::new())?);
+                ["worker", stage.name(), "--blobs", &blobs, "--spool", &spool, "--log-file", &log, "--own-jobs"];
+            roles.push(role(&name, &words.map(str::to_owned), Vec::new())?);
         }
     }
     Ok(roles)

@@ -8,7 +8,7 @@ use socrates_model::JobState;
 use socrates_model::wire::{BatchStatus, Failed, StageStatus, StatusAsk, StatusReply, Table, WorkerStatus};
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::explain_job::{self, class_words};
 use crate::progress::span;
 use crate::standing::head;
@@ -91,9 +91,9 @@ impl Viewer {
     ///
     /// # Errors
     /// Nobody works there, or lets nobody of this role in.
-    pub async fn open(config: &Config, what: &str) -> Result<Self, Complaint> {
+    pub async fn open(config: &Config, what: &str) -> Result<Self, Diagnostic> {
         let (address, namespace) = endpoint(what).ok_or_else(|| {
-            Complaint::input(
+            Diagnostic::input(
                 format!("nobody works in `{what}` now"),
                 "name the folder of a run that goes on, or an endpoint such as tcp/127.0.0.1:7447@main",
             )
@@ -106,11 +106,11 @@ impl Viewer {
     ///
     /// # Errors
     /// The orchestrator does not answer, or is of an earlier version.
-    pub async fn look(&self) -> Result<Sight, Complaint> {
+    pub async fn look(&self) -> Result<Sight, Diagnostic> {
         let ask = StatusAsk { table: true, ..StatusAsk::default() };
         let reply = calls::status(self.bus.as_ref(), &ask).await.map_err(calls::silent)?;
         sight(&self.what, &reply).ok_or_else(|| {
-            Complaint::input(
+            Diagnostic::input(
                 "this orchestrator is of an earlier version and tells no table",
                 "`socrates status` works with it; start `socrates cluster up` of this version",
             )
@@ -121,7 +121,7 @@ impl Viewer {
     ///
     /// # Errors
     /// The orchestrator does not answer, or refuses.
-    pub async fn act(&self, deed: &Deed) -> Result<String, Complaint> {
+    pub async fn act(&self, deed: &Deed) -> Result<String, Diagnostic> {
         let of_batch = |name: &String| Whom { batch: Some(name.clone()), ..Whom::default() };
         let (act, whom) = match deed {
             Deed::Pause(batch) => (Act::Pause, of_batch(batch)),
@@ -136,7 +136,7 @@ impl Viewer {
     ///
     /// # Errors
     /// The orchestrator does not answer, or does not know the job.
-    pub async fn explain(&self, job: &str) -> Result<Vec<String>, Complaint> {
+    pub async fn explain(&self, job: &str) -> Result<Vec<String>, Diagnostic> {
         explain_job::of_bus(self.bus.as_ref(), job).await
     }
 

@@ -10,7 +10,7 @@
 use socrates_model::likeness::Likeness;
 use socrates_model::{AuthorSpec, Role};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 use crate::prepare::Prepared;
 use crate::{cores, in_process};
@@ -81,7 +81,7 @@ pub(crate) fn plans<'a>(
     prepared: impl Iterator<Item = &'a Prepared>,
     seed: u64,
     repeats: bool,
-) -> Result<Vec<Plan>, Complaint> {
+) -> Result<Vec<Plan>, Diagnostic> {
     let mut plans = Vec::new();
     for one in prepared {
         let wanted = one.request.run.variants;
@@ -102,7 +102,7 @@ fn is_foreseen(prepared: &Prepared) -> bool {
 }
 
 /// The variants of a request that wants several.
-fn plan(prepared: &Prepared, seed: u64) -> Result<Plan, Complaint> {
+fn plan(prepared: &Prepared, seed: u64) -> Result<Plan, Diagnostic> {
     let wanted = prepared.request.run.variants;
     if !is_foreseen(prepared) {
         return Ok(Plan::in_turn(seed, wanted));

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use socrates_model::ScenarioEnd;
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::progress::Progress;
 use crate::words::plural;
@@ -37,7 +37,7 @@ impl Wrong {
 ///
 /// # Errors
 /// A folder that holds no bundle, or cannot be read.
-pub fn verify(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Complaint> {
+pub fn verify(talk: &Printer, folders: &[PathBuf]) -> Result<Code, Diagnostic> {
     let (mut there, mut gone, mut lines): (Vec<PathBuf>, Vec<PathBuf>, usize) = (Vec::new(), Vec::new(), 0);
     for folder in folders {
         if bundle::is_bundle(folder) {
@@ -87,7 +87,7 @@ struct Holds {
     lines: usize,
 }
 
-fn of_library(root: &Path) -> Result<Holds, Complaint> {
+fn of_library(root: &Path) -> Result<Holds, Diagnostic> {
     let found: BTreeSet<String> = batch::bundles(root)?.into_iter().collect();
     let listed = if root.join(library_index::FILE).is_file() { Some(library_index::read_whole(root)?) } else { None };
     let rows = listed.into_iter().flat_map(|library| library.scenarios);

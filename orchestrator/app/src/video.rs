@@ -11,7 +11,7 @@ use socrates_model::{Digest, HumanId, Recording, Run};
 
 use crate::bundle::{self, Bundle, RunEntry};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::progress::Progress;
 
@@ -59,14 +59,14 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    fn of(path: &Path) -> Result<Self, Complaint> {
+    fn of(path: &Path) -> Result<Self, Diagnostic> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         match ending.as_str() {
             "mp4" => Ok(Self::Mp4),
             "webm" => Ok(Self::Webm),
             "gif" => Ok(Self::Gif),
             "svg" => Ok(Self::Svg),
-            _ => Err(Complaint::input(
+            _ => Err(Diagnostic::input(
                 format!("`{}` is no film: its ending is `{ending}`", path.display()),
                 "name a file that ends in .mp4, .webm (both need ffmpeg), .gif or .svg",
             )),
@@ -79,13 +79,13 @@ impl Kind {
 }
 
 /// Makes the film, and tells where it is.
-pub fn video(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<(), Complaint> {
+pub fn video(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<(), Diagnostic> {
     talk.result(&film(talk, config, options)?);
     Ok(())
 }
 
 /// Makes the film, and hands back what is told of it to programs.
-pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<serde_json::Value, Complaint> {
+pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> Result<serde_json::Value, Diagnostic> {
     let ffmpeg = config.installed("ffmpeg");
     let bundle = bundle::read(&options.bundle)?;
     let mut runs = shown_runs(&bundle, &options.run)?;
@@ -104,13 +104,13 @@ pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> R
     });
     let kind = Kind::of(&out)?;
     if kind.needs_ffmpeg() && ffmpeg.is_none() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` needs ffmpeg, which is not in PATH", out.display()),
             "install it (Debian: apt-get install ffmpeg), or name a .gif or .svg file, which need nothing",
         ));
     }
     if let Some(who) = options.from.filter(|_| kind == Kind::Svg) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` cannot show what {who} sees: an animated SVG only moves shapes", out.display()),
             "name a .gif file, or with ffmpeg an .mp4 or .webm file",
         ));
@@ -157,7 +157,7 @@ pub(crate) fn film(talk: &Printer, config: &Config, options: &VideoOptions) -> R
 }
 
 /// Why there is no film.
-pub(crate) fn wrong(why: socrates_draw::FilmError) -> Complaint {
+pub(crate) fn wrong(why: socrates_draw::FilmError) -> Diagnostic {
     let hint = match &why {
         socrates_draw::FilmError::Absent { .. } => "name somebody who is there all the time, or leave the person out",
         socrates_draw::FilmError::Empty
@@ -168,13 +168,13 @@ pub(crate) fn wrong(why: socrates_draw::FilmError) -> Complaint {
         | socrates_draw::FilmError::Picture(_) => "`socrates video --help` names what is allowed",
     };
     let cause = std::error::Error::source(&why).map(ToString::to_string);
-    let mut complaint = Complaint::input(why.to_string(), hint);
-    complaint.causes.extend(cause);
-    complaint
+    let mut diagnostic = Diagnostic::input(why.to_string(), hint);
+    diagnostic.causes.extend(cause);
+    diagnostic
 }
 
 /// The runs that are shown; each must be in the bundle.
-pub(crate) fn shown_runs(bundle: &Bundle, asked: &[Run]) -> Result<Vec<Run>, Complaint> {
+pub(crate) fn shown_runs(bundle: &Bundle, asked: &[Run]) -> Result<Vec<Run>, Diagnostic> {
     let known: Vec<Run> = bundle.manifest.runs.iter().map(RunEntry::run).collect();
     if asked.is_empty() {
         return Ok(known.into_iter().take(1).collect());
@@ -182,7 +182,7 @@ pub(crate) fn shown_runs(bundle: &Bundle, asked: &[Run]) -> Result<Vec<Run>, Com
     for run in asked {
         if !known.contains(run) {
             let names: Vec<String> = known.iter().map(Run::to_string).collect();
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("the bundle has no run `{run}`"),
                 format!("its runs are: {}", names.join(", ")),
             ));
@@ -195,23 +195,23 @@ fn round(x: f64) -> f64 {
     (x * 100.0).round() / 100.0
 }
 
-fn speed(text: &str) -> Result<Option<f64>, Complaint> {
+fn speed(text: &str) -> Result<Option<f64>, Diagnostic> {
     if text == "auto" {
         return Ok(None);
     }
     text.trim_end_matches(['x', '×']).parse::<f64>().map(Some).map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`--speed {text}` is no speed: {why}"),
             "`auto`, or simulated seconds per second such as 2",
         )
     })
 }
 
-fn size(text: Option<&str>, kind: Kind) -> Result<(u32, u32), Complaint> {
+fn size(text: Option<&str>, kind: Kind) -> Result<(u32, u32), Diagnostic> {
     let Some(text) = text else { return Ok(if kind == Kind::Gif { (800, 450) } else { (1280, 720) }) };
     text.split_once('x')
         .and_then(|(width, height)| Some((width.trim().parse().ok()?, height.trim().parse().ok()?)))
-        .ok_or_else(|| Complaint::input(format!("`--size {text}` is no size"), "for example 1280x720"))
+        .ok_or_else(|| Diagnostic::input(format!("`--size {text}` is no size"), "for example 1280x720"))
 }
 
 /// Hands every picture to ffmpeg as it is drawn.
@@ -222,10 +222,10 @@ pub(crate) fn by_ffmpeg(
     kind: Kind,
     out: &Path,
     progress: &dyn Fn(usize),
-) -> Result<(), Complaint> {
+) -> Result<(), Diagnostic> {
     if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).map_err(|why| {
-            Complaint::input(format!("cannot write `{}`: {why}", out.display()), "--out chooses another place")
+            Diagnostic::input(format!("cannot write `{}`: {why}", out.display()), "--out chooses another place")
         })?;
     }
     let codec: &[&str] = if kind == Kind::Mp4 {
@@ -234,7 +234,7 @@ pub(crate) fn by_ffmpeg(
         &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "32", "-row-mt", "1", "-deadline", "good", "-cpu-used", "5"]
     };
     let failed =
-        |what: String| Complaint::input(what, "name a .gif or .svg file, which need no ffmpeg").with_code(Code::Input);
+        |what: String| Diagnostic::input(what, "name a .gif or .svg file, which need no ffmpeg").with_code(Code::Input);
     let mut child: Child = Command::new(program)
         .args(["-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s"])
         .arg(format!("{}x{}", options.size.0, options.size.1))
@@ -264,14 +264,14 @@ pub(crate) fn by_ffmpeg(
         return Ok(());
     }
     let said = String::from_utf8_lossy(&end.stderr);
-    let mut complaint = failed(format!("ffmpeg could not write `{}` ({})", out.display(), end.status));
-    complaint.causes = said.lines().rev().take(5).map(str::to_owned).collect();
-    complaint.causes.reverse();
-    Err(complaint)
+    let mut diagnostic = failed(format!("ffmpeg could not write `{}` ({})", out.display(), end.status));
+    diagnostic.causes = said.lines().rev().take(5).map(str::to_owned).collect();
+    diagnostic.causes.reverse();
+    Err(diagnostic)
 }
 
 /// The film as GIF.
-fn gif(film: &Film<'_>, options: FilmOptions, progress: &dyn Fn(usize)) -> Result<Vec<u8>, Complaint> {
+fn gif(film: &Film<'_>, options: FilmOptions, progress: &dyn Fn(usize)) -> Result<Vec<u8>, Diagnostic> {
     let count = film.times.pictures();
     let mut histogram = Histogram::default();
     // A dozen pictures show every color there is.
@@ -279,7 +279,7 @@ fn gif(film: &Film<'_>, options: FilmOptions, progress: &dyn Fn(usize)) -> Resul
         histogram.add(&film.picture(index).map_err(wrong)?);
     }
     let ours = |why: socrates_draw::gif::GifError| {
-        Complaint::input(why.to_string(), "--size chooses another size, such as 800x450")
+        Diagnostic::input(why.to_string(), "--size chooses another size, such as 800x450")
     };
     let mut gif = Gif::new(options.size.0, options.size.1, histogram.palette()).map_err(ours)?;
     for index in 0..count {

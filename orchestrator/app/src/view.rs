@@ -20,7 +20,7 @@ use socrates_gateway::{Gateway, Tls};
 use tokio::net::TcpListener;
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::process::leave;
 use shelves::{Folder, Place, Runs};
@@ -54,14 +54,14 @@ pub struct ViewOptions {
 }
 
 /// Shows it until it is told to leave.
-pub async fn view(talk: &Printer, config: &Config, options: &ViewOptions) -> Result<(), Complaint> {
+pub async fn view(talk: &Printer, config: &Config, options: &ViewOptions) -> Result<(), Diagnostic> {
     let place = Place::of(&options.what)?;
     place.check(config)?;
     let listener = listen(options).await?;
-    let address = listener.local_addr().map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+    let address = listener.local_addr().map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))?;
     let rules = rules(options, &address)?;
     let policy = Policy::letting(&options.frames)
-        .map_err(|why| Complaint::input(why, "--allow-frame names an origin such as https://lab.example"))?;
+        .map_err(|why| Diagnostic::input(why, "--allow-frame names an origin such as https://lab.example"))?;
     let tls = options.tls.as_ref().map(|(cert, key)| tls(cert, key)).transpose()?;
     let scheme = if tls.is_some() { "https" } else { "http" };
     let fragment = rules.token.as_ref().map_or_else(String::new, |token| format!("#token={token}"));
@@ -102,11 +102,11 @@ pub async fn view(talk: &Printer, config: &Config, options: &ViewOptions) -> Res
     Ok(())
 }
 
-async fn listen(options: &ViewOptions) -> Result<TcpListener, Complaint> {
+async fn listen(options: &ViewOptions) -> Result<TcpListener, Diagnostic> {
     if let Some(address) = options.listen {
         return TcpListener::bind(address).await.map_err(|why| {
             let hint = "another port, `--listen 127.0.0.1:0` for any that is free, or end the program that has it";
-            Complaint::input(format!("cannot listen on `{address}`: {why}"), hint)
+            Diagnostic::input(format!("cannot listen on `{address}`: {why}"), hint)
         });
     }
     for port in PORTS.chain([0]) {
@@ -114,12 +114,12 @@ async fn listen(options: &ViewOptions) -> Result<TcpListener, Complaint> {
             return Ok(listener);
         }
     }
-    Err(Complaint::input("no port of this machine is free", "`socrates doctor` checks this machine")
+    Err(Diagnostic::input("no port of this machine is free", "`socrates doctor` checks this machine")
         .with_code(Code::Ours))
 }
 
 /// What is let in: from this machine everybody, from elsewhere those with the token.
-fn rules(options: &ViewOptions, address: &SocketAddr) -> Result<Rules, Complaint> {
+fn rules(options: &ViewOptions, address: &SocketAddr) -> Result<Rules, Diagnostic> {
     let token = match &options.token_file {
         Some(file) => Some(token_of(file)?),
         None if address.ip().is_loopback() => None,
@@ -135,34 +135,34 @@ fn rules(options: &ViewOptions, address: &SocketAddr) -> Result<Rules, Complaint
 }
 
 /// The token in a file.
-fn token_of(file: &Path) -> Result<String, Complaint> {
+fn token_of(file: &Path) -> Result<String, Diagnostic> {
     let token = crate::files::text(file, 4096, "a token")?.trim().to_owned();
     if token.len() < TOKEN_CHARS || !token.chars().all(|c| c.is_ascii_alphanumeric()) {
         let what = format!("the token in `{}` has {} characters", file.display(), token.len());
         let hint = format!("at least {TOKEN_CHARS} of a-z A-Z 0-9, such as `openssl rand -hex 32` prints");
-        return Err(Complaint::input(what, hint));
+        return Err(Diagnostic::input(what, hint));
     }
     Ok(token)
 }
 
 /// A token that nobody guesses: 128 bits of the system's chance.
-pub(crate) fn new_token() -> Result<String, Complaint> {
+pub(crate) fn new_token() -> Result<String, Diagnostic> {
     let mut bytes = [0_u8; TOKEN_CHARS / 2];
     let drawn = std::fs::File::open("/dev/urandom").and_then(|mut file| file.read_exact(&mut bytes));
     drawn.map_err(|why| {
-        Complaint::input(format!("no token can be drawn: {why}"), "`socrates doctor` checks this machine")
+        Diagnostic::input(format!("no token can be drawn: {why}"), "`socrates doctor` checks this machine")
     })?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn tls(cert: &Path, key: &Path) -> Result<Tls, Complaint> {
+fn tls(cert: &Path, key: &Path) -> Result<Tls, Diagnostic> {
     let read = |file: &Path| {
         std::fs::read(file).map_err(|why| {
-            Complaint::input(format!("cannot read `{}`: {why}", file.display()), "--cert and --key name PEM files")
+            Diagnostic::input(format!("cannot read `{}`: {why}", file.display()), "--cert and --key name PEM files")
         })
     };
     Tls::of_pem(&read(cert)?, &read(key)?).map_err(|why| {
         let what = format!("`{}` and `{}` are no certificate with its key: {why}", cert.display(), key.display());
-        Complaint::input(what, "both are PEM files, the chain with the server's own certificate first")
+        Diagnostic::input(what, "both are PEM files, the chain with the server's own certificate first")
     })
 }

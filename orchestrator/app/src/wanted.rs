@@ -8,22 +8,22 @@ use socrates_model::ScenarioId;
 use socrates_model::wire::{ScenarioSpec, Seeds, Series};
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::prepare::{Prepared, scenario_id};
 use crate::run_options::RunOptions;
 use crate::variants::Plan;
 
 /// One scenario to be made.
 #[derive(Debug, Clone)]
-pub(crate) struct Wanted<'a> {
+pub struct Wanted<'a> {
     /// Its id.
-    pub(crate) id: ScenarioId,
+    pub id: ScenarioId,
     /// Which variant of its request it is, 0 the first.
-    pub(crate) index: u32,
+    pub index: u32,
     /// Its seed.
-    pub(crate) seed: u64,
+    pub seed: u64,
     /// What it is made from.
-    pub(crate) prepared: &'a Prepared,
+    pub prepared: &'a Prepared,
 }
 
 /// Every scenario of these requests by its plan, with its id and seed.
@@ -31,7 +31,7 @@ pub(crate) fn wanted<'a, P: Borrow<Prepared>>(
     prepared: &'a [P],
     seed: u64,
     plans: &[Plan],
-) -> Result<Vec<Wanted<'a>>, Complaint> {
+) -> Result<Vec<Wanted<'a>>, Diagnostic> {
     let mut wanted = Vec::new();
     for (one, plan) in prepared.iter().zip(plans) {
         let one: &Prepared = one.borrow();
@@ -49,7 +49,7 @@ pub(crate) fn specs<'a>(
     config: &Config,
     options: &RunOptions,
     blobs: &LocalBlobs,
-) -> Result<Vec<ScenarioSpec>, Complaint> {
+) -> Result<Vec<ScenarioSpec>, Diagnostic> {
     let mut known: Vec<(&'a Prepared, ScenarioSpec)> = Vec::new();
     let mut of = |want: &Wanted<'a>| {
         if let Some((_, alike)) = known.iter().find(|(prepared, _)| std::ptr::eq(*prepared, want.prepared)) {
@@ -76,7 +76,7 @@ pub(crate) fn drawn(
     config: &Config,
     options: &RunOptions,
     blobs: &LocalBlobs,
-) -> Result<(Vec<(usize, ScenarioSpec)>, Vec<(usize, Series)>), Complaint> {
+) -> Result<(Vec<(usize, ScenarioSpec)>, Vec<(usize, Series)>), Diagnostic> {
     let (mut single, mut series) = (Vec::new(), Vec::new());
     for (place, (one, plan)) in prepared.iter().zip(plans).enumerate() {
         let named = |index: u32| scenario_id(&one.name, options.seed, index, one.request.run.variants);
@@ -104,14 +104,14 @@ fn spec(
     config: &Config,
     options: &RunOptions,
     blobs: &LocalBlobs,
-) -> Result<ScenarioSpec, Complaint> {
+) -> Result<ScenarioSpec, Diagnostic> {
     let prepared = want.prepared;
     let put = |text: String| {
-        blobs
-            .put(text.as_bytes())
-            .map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"))
+        blobs.put(text.as_bytes()).map_err(|why| {
+            Diagnostic::input(format!("cannot store an artifact: {why}"), "--out chooses another folder")
+        })
     };
-    let json = |value: Result<String, serde_json::Error>| value.map_err(|why| Complaint::resumes(why.to_string()));
+    let json = |value: Result<String, serde_json::Error>| value.map_err(|why| Diagnostic::resumes(why.to_string()));
     let mut settings =
         BTreeMap::from([("author".to_owned(), prepared.author.to_string()), ("pace".to_owned(), options.pace.clone())]);
     settings.extend(prepared.injected.clone());

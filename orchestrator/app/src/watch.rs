@@ -13,7 +13,7 @@ use socrates_stream::{Sight, TickRange, Watch};
 
 use crate::calls;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::{Format, Printer};
 use crate::process::client;
 use crate::supervise::endpoint;
@@ -31,9 +31,9 @@ const RUNS_ASKED: usize = 64;
 /// The same once the run itself has said that it ends.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
-async fn connect(config: &Config, what: &str) -> Result<Arc<dyn Bus>, Complaint> {
+async fn connect(config: &Config, what: &str) -> Result<Arc<dyn Bus>, Diagnostic> {
     let (endpoint, namespace) = endpoint(what).ok_or_else(|| {
-        Complaint::input(
+        Diagnostic::input(
             format!("nothing is being made in `{what}`"),
             "name the folder of a run that is going on, or an endpoint such as tcp/127.0.0.1:7447@main",
         )
@@ -42,13 +42,13 @@ async fn connect(config: &Config, what: &str) -> Result<Arc<dyn Bus>, Complaint>
 }
 
 /// Follows one run to its end: every tick, or an exact list of the missing, which are then fetched.
-pub async fn watch(talk: &Printer, config: &Config, what: &str, run: Option<&str>) -> Result<(), Complaint> {
+pub async fn watch(talk: &Printer, config: &Config, what: &str, run: Option<&str>) -> Result<(), Diagnostic> {
     let bus = connect(config, what).await?;
     let ours =
-        |why: String| Complaint::input(why, "the run may be over; `socrates status` shows it").with_code(Code::Ours);
+        |why: String| Diagnostic::input(why, "the run may be over; `socrates status` shows it").with_code(Code::Ours);
     let run = match run {
         Some(name) => RunId::new(name)
-            .map_err(|bad| Complaint::input(bad.to_string(), "run names look like scenario.planner-seed"))?,
+            .map_err(|bad| Diagnostic::input(bad.to_string(), "run names look like scenario.planner-seed"))?,
         None => announced(bus.as_ref()).await?,
     };
     let mut watch = Watch::open(bus.clone(), &run, DEPTH).await.map_err(|why| ours(why.to_string()))?;
@@ -162,9 +162,9 @@ fn words(kind: &EventKind) -> Option<String> {
 }
 
 /// The first run that is announced, or one that is going on.
-async fn announced(bus: &dyn Bus) -> Result<RunId, Complaint> {
+async fn announced(bus: &dyn Bus) -> Result<RunId, Diagnostic> {
     let none = || {
-        Complaint::input(
+        Diagnostic::input(
             "no run was announced within a minute",
             "`socrates status` shows how far it is; --run names one",
         )
@@ -172,7 +172,7 @@ async fn announced(bus: &dyn Bus) -> Result<RunId, Complaint> {
     let mut metas = bus
         .subscribe(keys::RUNS, 16, Overflow::DropOldest)
         .await
-        .map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+        .map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))?;
     let name = |key: &str| {
         key.strip_prefix("live/").and_then(|rest| rest.strip_suffix("/meta")).and_then(|name| RunId::new(name).ok())
     };

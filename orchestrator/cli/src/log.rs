@@ -5,7 +5,7 @@ use std::io::{IsTerminal as _, Write as _};
 
 use serde_json::{Map, Value};
 use socrates_app::config::Config;
-use socrates_app::exit::Complaint;
+use socrates_app::exit::Diagnostic;
 use socrates_app::logs;
 use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
@@ -16,11 +16,11 @@ use tracing_subscriber::util::SubscriberInitExt as _;
 use tracing_subscriber::{EnvFilter, fmt};
 
 /// Starts it as the configuration says.
-pub(crate) fn start(config: &Config) -> Result<(), Complaint> {
+pub(crate) fn start(config: &Config) -> Result<(), Diagnostic> {
     logs::strike_keys_of(config);
     let filter = |key: &str| {
         EnvFilter::try_new(config.text(key)).map_err(|why| {
-            Complaint::input(
+            Diagnostic::input(
                 format!("`{key}` is not a filter: {why}"),
                 "for example \"warn\" or \"socrates_kit=debug\"",
             )
@@ -38,7 +38,7 @@ pub(crate) fn start(config: &Config) -> Result<(), Complaint> {
         "json" => Lines { kept: false }.with_filter(shown).boxed(),
         other => {
             let what = format!("`log.format` is `{other}`; it takes text or json");
-            return Err(Complaint::input(what, "`socrates config log` prints the manual"));
+            return Err(Diagnostic::input(what, "`socrates config log` prints the manual"));
         }
     };
     // Lines for a file are made only where there may be one.

@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use clap::Parser as _;
 use socrates_app::config::{Config, Program};
-use socrates_app::exit::{Code, Complaint};
+use socrates_app::exit::{Code, Diagnostic};
 use socrates_app::output::{self, Printer};
 
 use crate::verbs::{Cli, Format};
@@ -42,22 +42,22 @@ fn main() -> ExitCode {
     let code = match begin(&talk, &cli) {
         Ok(code) => code,
         // A child tells its supervisor, who tells the person once.
-        Err(complaint) if cli.verb.is_tied() => {
-            talk.last_word(&complaint.object());
-            if complaint.code == Code::Input { Code::Stuck } else { complaint.code }
+        Err(diagnostic) if cli.verb.is_tied() => {
+            talk.last_word(&diagnostic.object());
+            if diagnostic.code == Code::Input { Code::Stuck } else { diagnostic.code }
         }
-        Err(complaint) => {
+        Err(diagnostic) => {
             // Leaving on purpose is no error.
-            let word = if complaint.code == Code::Waits { "" } else { "error: " };
-            talk.warn(&format!("{word}{complaint}"));
-            talk.result(&complaint.object());
-            complaint.code
+            let word = if diagnostic.code == Code::Waits { "" } else { "error: " };
+            talk.warn(&format!("{word}{diagnostic}"));
+            talk.result(&diagnostic.object());
+            diagnostic.code
         }
     };
     ExitCode::from(code as u8)
 }
 
-fn begin(talk: &Printer, cli: &Cli) -> Result<Code, Complaint> {
+fn begin(talk: &Printer, cli: &Cli) -> Result<Code, Diagnostic> {
     let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.all())?.of(Program {
         file: std::env::current_exe().ok(),
         build: BUILD_ID.to_owned(),
@@ -67,7 +67,7 @@ fn begin(talk: &Printer, cli: &Cli) -> Result<Code, Complaint> {
     let talk = &talk.with_pause(Duration::from_secs(config.number("log.progress_s")));
     let runtime =
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
-            Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
+            Diagnostic::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
         })?;
     // Boxed: the runtime's loops would else each hold the code of all verbs.
     let work: Pin<Box<dyn Future<Output = _> + '_>> = Box::pin(cli.verb.act(talk, &config));

@@ -227,6 +227,21 @@ fn a_store_can_be_looked_at_while_it_is_held_and_nothing_changes() {
 }
 
 #[test]
+fn a_store_knows_its_last_64_starts_and_an_older_copy_only_those_before_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let (path, copy) = (dir.path().join("jobs.sqlite"), dir.path().join("copy.sqlite"));
+    assert_eq!(SqliteStore::open(&path).unwrap().begin(u64::MAX).unwrap(), [u64::MAX]);
+    std::fs::copy(&path, &copy).unwrap();
+    assert_eq!(SqliteStore::open(&path).unwrap().begin(7).unwrap(), [u64::MAX, 7]);
+    assert_eq!(SqliteStore::open(&copy).unwrap().begin(8).unwrap(), [u64::MAX, 8]);
+    let mut store = SqliteStore::open(&path).unwrap();
+    for start in 100..200 {
+        store.begin(start).unwrap();
+    }
+    assert_eq!(store.begin(200).unwrap(), (137..=200).collect::<Vec<u64>>());
+}
+
+#[test]
 fn what_is_no_store_gives_a_clear_error() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("jobs.sqlite");

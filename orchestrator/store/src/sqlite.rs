@@ -16,6 +16,10 @@ use crate::{OUTBOX, SCHEMA_VERSION, Store, StoreError, check, schema};
 /// Names under which the paused batches and the paused stages stand.
 pub(crate) const PAUSED: &str = "paused";
 pub(crate) const PAUSED_STAGES: &str = "paused_stages";
+/// Name under which the numbers of the starts stand, in hexadecimal digits, oldest first.
+const STARTED: &str = "starts";
+/// Starts that are remembered.
+const STARTS: usize = 64;
 
 /// The job store of one orchestrator. Do not put it on a network file system: its locks and its log
 /// need a local disk.
@@ -105,6 +109,22 @@ impl SqliteStore {
 
     fn failure(&self, source: rusqlite::Error) -> StoreError {
         failure(&self.path, source)
+    }
+
+    /// Writes down a start of an orchestrator by a number that no other has; gives the last [`STARTS`] of this store, this one among
+    /// them. A worker that served one of them knows the jobs of this store, in this state or an earlier one.
+    ///
+    /// # Errors
+    /// [`StoreError::Sqlite`].
+    pub fn begin(&mut self, id: u64) -> Result<Vec<u64>, StoreError> {
+        let written = self.meta(STARTED)?.unwrap_or_default();
+        let mut starts: Vec<u64> =
+            written.split_whitespace().filter_map(|start| u64::from_str_radix(start, 16).ok()).collect();
+        starts.push(id);
+        starts.drain(..starts.len().saturating_sub(STARTS));
+        let text: Vec<String> = starts.iter().map(|start| format!("{start:016x}")).collect();
+        self.set(STARTED, &text.join(" "))?;
+        Ok(starts)
     }
 
     fn meta(&self, name: &str) -> Result<Option<String>, StoreError> {

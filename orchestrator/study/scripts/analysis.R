@@ -4,6 +4,7 @@ suppressPackageStartupMessages({ library(ordinal); library(psych); library(Bradl
 folder <- commandArgs(trailingOnly = TRUE)
 folder <- if (length(folder) > 0) folder[[1]] else "."
 ratings <- read.csv(file.path(folder, "ratings.csv"), colClasses = c(participant = "character", film = "character"))
+if (any(ratings[["simulated"]] == 1)) cat("SIMULATED ANSWERS: no person took part.\n")
 ours <- read.csv(file.path(folder, "results.csv"), colClasses = c(which = "character"))
 planners <- readLines(file.path(folder, "planners.txt"))
 ratings <- ratings[ratings$excluded == 0, ]

@@ -5,6 +5,8 @@ import numpy as np
 from scipy import stats
 folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 ratings = [r for r in csv.DictReader(open(folder / "ratings.csv", encoding="utf-8")) if r["excluded"] == "0"]
+if any(r.get("simulated") == "1" for r in ratings):
+    print("SIMULATED ANSWERS: no person took part.")
 ours = {(r["scenario"], r["dimension"], r["statistic"], r["which"]): float(r["value"]) for r in csv.DictReader(open(folder / "results.csv", encoding="utf-8"))}
 planners = (folder / "planners.txt").read_text(encoding="utf-8").split("\n")
 compared = far = 0

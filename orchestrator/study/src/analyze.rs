@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::cell::{Cell, cell};
 use crate::design::Design;
 use crate::exclude::excluded;
-use crate::rating::{Ratings, Row};
+use crate::rating::{Origin, Ratings, Row, is_by_people};
 use crate::stats::holm;
 
 /// Whether the study was declared before its answers were seen.
@@ -31,6 +31,9 @@ pub struct Results {
     pub digest: String,
     /// Whether it was declared before.
     pub declared: Declared,
+    /// Origin of the answers; a mark `"simulated": true` where no person gave them, else nothing.
+    #[serde(rename = "simulated", skip_serializing_if = "is_by_people")]
+    pub origin: Origin,
     /// People who answered.
     pub people: usize,
     /// Those left out, with the rules that they broke.
@@ -97,6 +100,7 @@ pub fn analyze(ratings: &Ratings, design: &Design, declared: Declared) -> Result
         title: design.title.clone(),
         digest: design.digest.clone(),
         declared,
+        origin: ratings.origin,
         people: ratings.participants.len(),
         excluded,
         ratings: (given, ratings.rows.len() - given),
@@ -141,15 +145,18 @@ fn findings(cells: &[Cell], alpha: f64) -> Vec<Finding> {
     found
 }
 
-/// The figures in one flat table for the scripts: `scenario,dimension,statistic,which,value`; what has no value has no line.
+/// The figures in one flat table for the scripts: `scenario,dimension,statistic,which,value`, and [`Origin::KEY`] where the answers are
+/// simulated; what has no value has no line.
 #[must_use]
 pub fn results_csv(results: &Results) -> String {
-    let mut out = "scenario,dimension,statistic,which,value\n".to_owned();
+    let (column, mark) =
+        if results.origin.is_simulated() { (format!(",{}", Origin::KEY), ",1") } else { Default::default() };
+    let mut out = format!("scenario,dimension,statistic,which,value{column}\n");
     for cell in &results.cells {
         let mut add = |statistic: &str, which: &str, value: f64| {
             let name = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
             let (scenario, dimension) = (name(&cell.scenario), name(&cell.dimension));
-            out.push_str(&format!("{scenario},{dimension},{statistic},{},{value}\n", name(which)));
+            out.push_str(&format!("{scenario},{dimension},{statistic},{},{value}{mark}\n", name(which)));
         };
         if let Ok(of) = &cell.friedman {
             add("friedman_chi2", "", of.chi2);

@@ -11,9 +11,10 @@ use serde::Serialize;
 
 use crate::design::{Design, Dimension};
 use crate::problem::Problem;
-use crate::rating::{Rating, Ratings};
+use crate::rating::{Origin, Rating, Ratings, is_by_people};
 use crate::simulate::Draws;
 use crate::stats::{float, holm, kendall, spearman};
+use crate::words;
 
 /// Fewest films: of fewer, a correlation can be anything.
 pub const FILMS: usize = 10;
@@ -86,6 +87,9 @@ pub struct Correlation {
 /// All of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Correlations {
+    /// Origin of the answers; a mark `"simulated": true` where no person gave them, else nothing.
+    #[serde(rename = "simulated", skip_serializing_if = "is_by_people")]
+    pub origin: Origin,
     /// What can be had.
     pub ceilings: Vec<Ceiling>,
     /// The metrics.
@@ -204,7 +208,8 @@ pub fn correlate(
 ) -> Result<Correlations, Problem> {
     let out: BTreeSet<&str> = excluded.keys().map(String::as_str).collect();
     let hold_out = check(design, metrics, wanted)?;
-    let mut found = Correlations { ceilings: Vec::new(), correlations: Vec::new(), hold_out: hold_out.clone() };
+    let (origin, hold_out_of) = (ratings.origin, hold_out.clone());
+    let mut found = Correlations { origin, ceilings: Vec::new(), correlations: Vec::new(), hold_out: hold_out_of };
     let rated: BTreeSet<&str> =
         ratings.rows.iter().filter(|row| row.rating.points().is_some()).map(|row| row.film.as_str()).collect();
     let apart = |film: &&str| design.film(film).is_some_and(|film| !hold_out.contains(&film.scenario));
@@ -403,10 +408,12 @@ impl Correlations {
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
         let pair =
             |pair: Option<(f64, f64)>| format!("{},{}", number(pair.map(|two| two.0)), number(pair.map(|two| two.1)));
-        let mut out = "dimension,metric,films,rho,low,high,p,p_holm,tau_b,within_scenarios,least_without_a_scenario,most_without_a_scenario,disattenuated,held_out,note\n".to_owned();
+        let mut out = "dimension,metric,films,rho,low,high,p,p_holm,tau_b,within_scenarios,least_without_a_scenario,most_without_a_scenario,disattenuated,held_out,note".to_owned();
+        let mark = if self.origin.is_simulated() { ",1" } else { "" };
+        out.push_str(&if mark.is_empty() { "\n".to_owned() } else { format!(",{}\n", Origin::KEY) });
         for one in &self.correlations {
             out.push_str(&format!(
-                "{},{},{},{},{},{},{},{},{},{},{},{},\"{}\"\n",
+                "{},{},{},{},{},{},{},{},{},{},{},{},\"{}\"{mark}\n",
                 one.dimension,
                 one.metric,
                 one.films,
@@ -429,7 +436,8 @@ impl Correlations {
     #[must_use]
     pub fn words(&self) -> String {
         let shown = |value: Option<f64>| value.map_or_else(|| "no value".to_owned(), |value| format!("{value:.2}"));
-        let mut out = String::from(
+        let mut out = words::mark(self.origin);
+        out.push_str(
             "Metrics of runs were correlated with the mean scores of their films (Spearman's rho, Kendall's tau-b; a film is one point). Intervals of 95 % come from drawing people and films anew, both whole. p is adjusted by Holm over all metrics and scales that were declared. What has no value is missing, not 0. ",
         );
         if !self.hold_out.is_empty() {
@@ -440,10 +448,10 @@ impl Correlations {
         }
         for one in &self.ceilings {
             out.push_str(&format!(
-                "\n{}: {} films, {} people; one person agrees with the mean of the others by {}, reliability of the means {}.",
+                "\n{}: {} films, {}; one person agrees with the mean of the others by {}, reliability of the means {}.",
                 one.dimension,
                 one.films,
-                one.people,
+                words::people(one.people, self.origin),
                 shown(one.one_against_others),
                 shown(one.reliability)
             ));
@@ -513,6 +521,20 @@ mod tests {
         let again = correlate(&ratings, &design, &BTreeMap::new(), &metrics, &declared(&["good", "noise"])).unwrap();
         assert_eq!(again, found, "same seed, same figures");
         assert_eq!(found.csv().lines().count(), 3);
+        assert!(!found.csv().contains("simulated") && !found.words().contains("simulated"));
+    }
+
+    #[test]
+    fn correlations_with_simulated_answers_are_marked_in_table_and_words() {
+        let design = study(4);
+        let (ratings, metrics) = answers(&design);
+        let ratings = Ratings { origin: Origin::Simulated, ..ratings };
+        let found = correlate(&ratings, &design, &BTreeMap::new(), &metrics, &declared(&["good"])).unwrap();
+        let (table, words) = (found.csv(), found.words());
+        assert!(table.lines().next().is_some_and(|head| head.ends_with(",note,simulated")), "{table}");
+        assert!(table.lines().skip(1).all(|line| line.ends_with(",1")), "{table}");
+        assert!(words.starts_with(Origin::MARK) && words.contains("20 simulated people"), "{words}");
+        assert!(serde_json::to_string(&found).unwrap().contains("\"simulated\":true"));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::analyze::{Declared, Results};
 use crate::cell::{Cell, Figure, PlannerScore};
 use crate::design::Design;
 use crate::exclude;
+use crate::rating::Origin;
 use crate::words;
 
 const STYLE: &str = include_str!("page.css");
@@ -36,10 +37,12 @@ fn or_why<T>(of: &Figure<T>, show: impl Fn(&T) -> String) -> String {
 #[must_use]
 pub fn page(results: &Results, design: &Design) -> String {
     let mut out = format!(
-        "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width,initial-scale=1\"><title>{0}</title><style>{STYLE}</style><main><h1>{0}</h1><p class=soft>Study file {1}… · {2}</p>",
+        "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content=\"width=device-width,initial-scale=1\"><title>{0}{3}</title><style>{STYLE}</style><main>{4}<h1>{0}</h1><p class=soft>Study file {1}… · {2}</p>",
         html(&results.title),
         results.digest.get(..16).unwrap_or_default(),
-        html(words::standing(results.declared))
+        html(words::standing(results.declared)),
+        if results.origin.is_simulated() { " (simulated answers)" } else { "" },
+        mark(results.origin)
     );
     summary(&mut out, results);
     excluded(&mut out, results, design);
@@ -55,13 +58,18 @@ pub fn page(results: &Results, design: &Design) -> String {
     out
 }
 
+/// The mark of simulated answers, which stays in sight; nothing where people gave them.
+fn mark(origin: Origin) -> String {
+    if origin.is_simulated() { format!("<p class=mark role=note>{}</p>", html(Origin::MARK)) } else { String::new() }
+}
+
 fn summary(out: &mut String, results: &Results) {
     let kept = results.people - results.excluded.len();
     let (given, missing) = results.ratings;
     put!(
         out,
-        "<section><h3>What the tests say</h3><p>{} people answered, {kept} stay after exclusions; {given} ratings, {missing} missing.</p>",
-        results.people
+        "<section><h3>What the tests say</h3><p>{} answered, {kept} stay after exclusions; {given} ratings, {missing} missing.</p>",
+        words::people(results.people, results.origin)
     );
     if results.findings.is_empty() {
         out.push_str(

@@ -83,6 +83,67 @@ pub struct Row {
     pub watched_s: Option<f64>,
 }
 
+/// Origin of all answers of a table. A table never mixes both: reading refuses it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Origin {
+    /// People gave them.
+    #[default]
+    People,
+    /// `study simulate` made them: no person gave any of them.
+    Simulated,
+}
+
+impl Origin {
+    /// Marking of simulated answers, in a sentence that every report and table in words begins with.
+    pub const MARK: &'static str =
+        "SIMULATED ANSWERS: made by `socrates study simulate`; no person took part, and nothing here is evidence.";
+    /// Column and key that mark simulated answers in tables and result files. Tables of answers by people lack it.
+    pub const KEY: &'static str = "simulated";
+
+    /// Whether the answers are simulated.
+    #[must_use]
+    pub const fn is_simulated(self) -> bool {
+        matches!(self, Self::Simulated)
+    }
+
+    /// Origin that a cell states: `1` or `true` for a simulated answer; `0`, `false` or nothing for an answer by a person.
+    pub(crate) fn of_cell(cell: &str) -> Option<Self> {
+        match cell.trim() {
+            "1" | "true" => Some(Self::Simulated),
+            "" | "0" | "false" => Some(Self::People),
+            _other => None,
+        }
+    }
+
+    /// Word for the origin in messages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::People => "answers by people",
+            Self::Simulated => "simulated answers",
+        }
+    }
+}
+
+/// Whether there is no mark to write.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+pub(crate) const fn is_by_people(origin: &Origin) -> bool {
+    !origin.is_simulated()
+}
+
+impl Serialize for Origin {
+    /// As the value of [`Origin::KEY`].
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_bool(self.is_simulated())
+    }
+}
+
+impl From<bool> for Origin {
+    fn from(simulated: bool) -> Self {
+        if simulated { Self::Simulated } else { Self::People }
+    }
+}
+
 /// All ratings of a study and who gave them. Rows stand in the order of participant, film and item.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ratings {
@@ -90,4 +151,6 @@ pub struct Ratings {
     pub participants: Vec<Participant>,
     /// What they said.
     pub rows: Vec<Row>,
+    /// Origin of all of them, as their files state it.
+    pub origin: Origin,
 }

@@ -1,4 +1,5 @@
 //! People who were never there: answers by a known rule, in every format that is read, to try a study before it costs anything.
+//! Each line says that it is simulated, and so does everything that is made of it.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +10,7 @@ use serde_json::{Value, json};
 use crate::design::{Design, williams};
 use crate::instrument::Instrument;
 use crate::kit::limesurvey::{PERSON, code};
-use crate::rating::Film;
+use crate::rating::{Film, Origin};
 
 /// What is true of the people who are simulated.
 #[derive(Debug, Clone, PartialEq)]
@@ -185,11 +186,11 @@ impl Simulated {
         for person in &self.people {
             for seen in &person.films {
                 let line = json!({ "kind": "film", "participant": person.id, "film": seen.film, "position": seen.position,
-                    "watched_s": seen.watched_s, "rt_s": seen.rt_s, "answers": seen.answers });
+                    "watched_s": seen.watched_s, "rt_s": seen.rt_s, "answers": seen.answers, "simulated": true });
                 out.push_str(&format!("{line}\n"));
             }
             let line = json!({ "kind": "person", "participant": person.id, "order": person.order.to_string(),
-                "duration_s": person.duration_s, "checks": person.checks });
+                "duration_s": person.duration_s, "checks": person.checks, "simulated": true });
             out.push_str(&format!("{line}\n"));
         }
         out
@@ -242,7 +243,7 @@ impl Simulated {
             }
             lines.push(line);
         }
-        text(&lines)
+        text(3, &lines)
     }
 
     /// As jsPsych writes it: a trial of `survey-likert` for each film, answers counted from 0.
@@ -271,7 +272,7 @@ impl Simulated {
                 lines.push(line.map(str::to_owned).to_vec());
             }
         }
-        text(&lines)
+        text(1, &lines)
     }
 
     /// As LimeSurvey exports it with codes, with an address that reading has to drop.
@@ -303,7 +304,7 @@ impl Simulated {
             }
             lines.push(line);
         }
-        text(&lines)
+        text(1, &lines)
     }
 
     /// As Qualtrics exports the survey of a kit, whose codebook tells its columns by ImportId: `column,role,film,item`.
@@ -352,7 +353,7 @@ impl Simulated {
             }
             lines.push(line);
         }
-        text(&lines)
+        text(3, &lines)
     }
 
     /// As Prolific exports its submissions.
@@ -366,7 +367,7 @@ impl Simulated {
             let line = [&format!("s{number}"), &person.id, "APPROVED", &taken, &age, sex, "Nowhere"];
             lines.push(line.map(str::to_owned).to_vec());
         }
-        text(&lines)
+        text(1, &lines)
     }
 }
 
@@ -377,10 +378,19 @@ fn times(seen: Option<&Seen>) -> [String; 3] {
     })
 }
 
-/// Lines as CSV.
-fn text(lines: &[Vec<String>]) -> String {
+/// Lines as CSV, each with a mark that its answers are simulated: the name of the column in the head lines, 1 below.
+fn text(head_lines: usize, lines: &[Vec<String>]) -> String {
     let cell = |cell: &String| {
         if cell.contains([',', '"', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.clone() }
     };
-    lines.iter().map(|line| line.iter().map(cell).collect::<Vec<_>>().join(",") + "\n").collect()
+    let line = |(at, line): (usize, &Vec<String>)| {
+        // The last head line of Qualtrics holds an ImportId for each column.
+        let mark = match at {
+            2 if head_lines == 3 => json!({ "ImportId": Origin::KEY }).to_string(),
+            _ if at < head_lines => Origin::KEY.to_owned(),
+            _ => "1".to_owned(),
+        };
+        line.iter().chain([&mark]).map(cell).collect::<Vec<_>>().join(",") + "\n"
+    };
+    lines.iter().enumerate().map(line).collect()
 }

@@ -4,12 +4,29 @@ use crate::analyze::{Declared, Results};
 use crate::design::{Design, Dimension, williams};
 use crate::exclude;
 use crate::kit::setup::{EYE_M, FIELD_DEGREES, Source, View};
+use crate::rating::Origin;
 
 /// What stands before the digest in a preregistration.
 const DIGEST: &str = "Digest of the study file (BLAKE3): ";
 
 fn many(count: usize, one: &str, more: &str) -> String {
     if count == 1 { format!("1 {one}") } else { format!("{count} {more}") }
+}
+
+/// Number of people who answered, such as `1 person` or `42 simulated people`.
+#[must_use]
+pub fn people(count: usize, origin: Origin) -> String {
+    if origin.is_simulated() {
+        many(count, "simulated person", "simulated people")
+    } else {
+        many(count, "person", "people")
+    }
+}
+
+/// First paragraph of a text about simulated answers; empty where people gave them.
+#[must_use]
+pub fn mark(origin: Origin) -> String {
+    if origin.is_simulated() { format!("{}\n\n", Origin::MARK) } else { String::new() }
 }
 
 /// The text to register: everything that the study file declares, in the order of common templates (data collected yet, hypotheses,
@@ -144,7 +161,8 @@ fn films(design: &Design) -> String {
 #[must_use]
 pub fn methods(results: &Results, design: &Design) -> String {
     let kept = results.people - results.excluded.len();
-    let mut out = format!("{}\n\nParticipants. {} people answered", design.title, results.people);
+    let mut out = mark(results.origin);
+    out.push_str(&format!("{}\n\nParticipants. {} answered", design.title, people(results.people, results.origin)));
     if results.excluded.is_empty() {
         out.push_str("; nobody was excluded. ");
     } else {

@@ -17,7 +17,6 @@
 pub mod cassette;
 pub mod chat;
 pub mod client;
-pub mod conforms;
 pub mod dialect;
 pub mod error;
 pub mod estimate;
@@ -43,7 +42,6 @@ mod stream_tests;
 pub use cassette::{Cassette, CassetteError, Nearest};
 pub use chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
 pub use client::{ChatClient, ClientConfig};
-pub use conforms::{Misfit, misfits};
 pub use dialect::{Dialect, Known, Learned, Rung, UnknownName, Wire};
 pub use error::{ChatError, Objection};
 pub use key::{ApiKey, strike_shapes};

@@ -11,23 +11,9 @@ mod corpora;
 
 use std::collections::BTreeSet;
 
-use corpora::{asked, facts};
-use serde::Deserialize;
+use corpora::{Corpus, asked, facts};
 use socrates_model::statement::Became;
 use socrates_model::{Reading, Request};
-
-#[derive(Deserialize)]
-struct Corpus {
-    request: Vec<Case>,
-}
-
-#[derive(Deserialize)]
-struct Case {
-    on: String,
-    text: String,
-    #[serde(default)]
-    facts: Vec<String>,
-}
 
 /// What became of the requests of a file.
 #[derive(Default)]

@@ -16,7 +16,7 @@ use socrates_model::{
 };
 
 use crate::manner::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
-use crate::story::{Before, Group, Person, ReadRule, Story, stands};
+use crate::story::{Before, Group, Person, ReadRule, Story, is_closed, stands};
 use crate::{named, place};
 
 /// What those do who stand one behind the other.
@@ -163,10 +163,15 @@ fn bare(stated: &impl serde::Serialize) -> String {
 /// The class of the room or car that somebody is in at first: as `start` says, or `place` of whoever leaves it or stays in it.
 fn in_place(human: &FormHuman, location: &Location) -> Option<PlaceClass> {
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
-    let closed = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
     let start = human.start.as_ref().and_then(|start| bound(start, location)).map(|start| start.class);
-    let place =
-        || human.place.as_ref().and_then(|place| bound(place, location)).map(|place| place.class).filter(closed);
+    let place = || {
+        human
+            .place
+            .as_ref()
+            .and_then(|place| bound(place, location))
+            .map(|place| place.class)
+            .filter(|class| is_closed(*class))
+    };
     start.or_else(|| if indoors { place() } else { None })
 }
 
@@ -339,7 +344,7 @@ fn waits_inside(request: &Request, location: &Location) -> Option<(PlaceClass, S
     let class = |place: &PlaceWord| bound(place, location).map(|bound| bound.class);
     let inside = stays.start.as_ref().or(stays.place.as_ref()).map_or(Some(PlaceClass::Room), class)?;
     let met = request.form.humans.iter().filter_map(|human| human.place.as_ref()).find_map(class);
-    let holds = matches!(inside, PlaceClass::Room | PlaceClass::Elevator) && met.is_none_or(|met| met == inside);
+    let holds = is_closed(inside) && met.is_none_or(|met| met == inside);
     holds.then(|| (inside, "relation = \"staying\"".to_owned()))
 }
 

@@ -5,7 +5,7 @@ use socrates_model::{Action, Fault, FaultCode, HumanId, PlaceClass, Relation, Tr
 
 use crate::manner::STARTLED_S;
 use crate::rules;
-use crate::story::{Person, ReadRule, Story, Unplayed, stands};
+use crate::story::{Person, ReadRule, Story, Unplayed, is_closed, stands};
 use crate::told::exclude;
 
 /// A standing group is judged until the robot is within 3 m; its members react a little later.
@@ -47,7 +47,7 @@ pub(crate) fn settle(story: &mut Story) {
 
 /// Whoever is in the room or car that the robot enters, and of whom no more is said, stays there.
 fn inside(story: &mut Story) {
-    let closed = |(class, _): &(PlaceClass, String)| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
+    let closed = |(class, _): &(PlaceClass, String)| is_closed(*class);
     let Some((class, quote)) = story.robot_enters.clone().filter(closed) else { return };
     if story.place.as_ref().is_some_and(|(other, _)| *other != class) {
         return;
@@ -100,7 +100,7 @@ fn comes_up_to(story: &mut Story) {
 
 /// Of a group of which some stand, those who are said to leave, or to stay in a room, stand with the others.
 fn stays_with_group(story: &mut Story) {
-    let rooms = matches!(story.place, Some((PlaceClass::Room | PlaceClass::Elevator, _)));
+    let rooms = story.place.as_ref().is_some_and(|(class, _)| is_closed(*class));
     for group in &story.groups {
         let members = || group.members.iter().filter_map(|who| story.people.get(*who));
         let indoors = |person: &Person| person.is(Relation::Leaving) || person.is(Relation::Staying);

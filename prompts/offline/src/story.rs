@@ -1,4 +1,4 @@
-//! Who is in a scenario and what they do, as a text or a form says it: what the layers above make a reading of.
+//! The people of a scenario and what they do, as a text or a form says it: what the layers above make a reading of.
 
 use socrates_model::proposal::Facing;
 use socrates_model::reading::ReadHuman;
@@ -201,6 +201,11 @@ impl Story {
             (false, _) => Relation::Static,
         }
     }
+}
+
+/// Whether a place has walls and a door: a room, or the car of an elevator.
+pub(crate) const fn is_closed(class: PlaceClass) -> bool {
+    matches!(class, PlaceClass::Room | PlaceClass::Elevator)
 }
 
 /// Whether somebody who follows the robot is met by it first: at its word, or after it has passed.

@@ -8,20 +8,20 @@
 //! Never: a word of the text. What the reader made nothing of is said as it says it.
 
 use socrates_model::request::MAX_HUMANS;
-use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, GroupId, PlaceClass, Relation, Rule, Trigger};
+use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, GroupId, Relation, Rule, Trigger};
 use socrates_reader::{Act, Cue, Line, Read, Reader, Reason, Step};
 
 use crate::manner;
-use crate::story::{Before, Group, Person, ReadRule, Story, agent, human_id, stands};
+use crate::story::{Before, Group, Person, ReadRule, Story, agent, human_id, is_closed, stands};
 
 /// Words that say no more of somebody than that they are there, as roles of a study.
 const CALLED: [&str; 6] = ["participant", "confederate", "bystander", "passenger", "occupant", "pedestrian"];
 /// Words that say nothing of somebody at all.
 const ANYBODY: [&str; 7] = ["person", "people", "human", "individual", "actor", "agent", "somebody"];
 
-/// The story of a text.
-pub(crate) fn story(text: &str) -> Story {
-    let mut story = told(text, &socrates_reader::read(text));
+/// The story of a text that was read so, each at the pace that is usual in their role.
+pub(crate) fn story(text: &str, read: &Read) -> Story {
+    let mut story = told(text, read);
     for person in &mut story.people {
         person.speed_mps = person.speed_mps.or_else(|| Reader::shipped().pace_of(&person.role));
     }
@@ -138,7 +138,6 @@ impl Telling<'_> {
         own.side = person.side.map(|side| (side, self.quote(|line| *line == Line::Side(who))));
         own.speed_mps = person.pace_mps;
         own.twice = person.twice.map(|place| (place, self.quote(|line| *line == Line::Twice(who))));
-        let any = || self.quote(|line| line.person() == Some(who));
         own.never = person.denied.iter().map(|act| (*act, any())).collect();
     }
 
@@ -222,10 +221,6 @@ fn someone(role: &str) -> Person {
         called: called.then(|| role.to_owned()),
         ..Person::default()
     }
-}
-
-const fn is_closed(class: PlaceClass) -> bool {
-    matches!(class, PlaceClass::Room | PlaceClass::Elevator)
 }
 
 /// Whoever is followed because they asked for it.

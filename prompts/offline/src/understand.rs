@@ -6,7 +6,7 @@ use socrates_model::{
     Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, Reading, Relation,
     Request,
 };
-use socrates_reader::{Familiar, Reader};
+use socrates_reader::{Familiar, Read, Reader};
 
 use crate::card::Ends;
 use crate::lines::{Line, lines};
@@ -19,6 +19,8 @@ use crate::{
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
     pub(crate) reading: Reading,
+    /// What the rough scenario was read as; empty where a form takes its place.
+    pub(crate) said: Read,
     /// Per human: desired speed, where it starts, whether its rules' triggers were said.
     pub(crate) extras: Vec<Extra>,
     /// Whether the people are those of the pattern, because the text names none.
@@ -44,9 +46,10 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool) ->
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
     let stated = !request.form.is_empty();
+    let said = rough.filter(|_| !stated).map(|_| socrates_reader::read(&told.story)).unwrap_or_default();
     let mut story = match rough {
         _ if stated => form::story(request, location),
-        Some(_) => told::story(&told.story),
+        Some(_) => told::story(&told.story, &said),
         None => Story::default(),
     };
     let mut task = task::read(&asked.story, location);
@@ -124,7 +127,7 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool) ->
         reading.notes.extend(form::differs(&reading, &understand(&text, location).reading));
     }
     let instructions = [&told, &asked, &context].into_iter().flat_map(|told| told.instructions.clone()).collect();
-    Understood { reading, extras, by_card, lines, unplayed: story.unplayed, task, instructions }
+    Understood { reading, said, extras, by_card, lines, unplayed: story.unplayed, task, instructions }
 }
 
 /// A pattern by name that this map cannot hold: a fault that says what is missing.

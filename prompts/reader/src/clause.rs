@@ -109,7 +109,7 @@ pub(crate) struct Clause {
     pub(crate) never: bool,
     /// Whether its subject stands in it.
     pub(crate) own: bool,
-    /// Whose acts; of an ellipsis, those of the clause before. Empty where nobody was named yet.
+    /// The people whose acts these are; of an ellipsis, those of the clause before. Empty where nobody was named yet.
     pub(crate) subject: Vec<Noun>,
     pub(crate) acts: Vec<Predicate>,
     /// Others who are named beside: `with her son`.

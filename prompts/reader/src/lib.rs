@@ -149,7 +149,7 @@ impl Reader {
         wish::wishes(text, &self.0)
     }
 
-    /// Whom words mean of people of these roles, of whom some were spoken of last.
+    /// The people that words mean, of people of these roles, of whom some were spoken of last.
     #[must_use]
     pub fn whom(&self, text: &str, known: &[String], last: &[usize]) -> Whom {
         wish::whom(text, known, last, &self.0)

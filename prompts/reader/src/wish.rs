@@ -39,7 +39,7 @@ pub struct Wish {
     pub group: bool,
 }
 
-/// Whom words mean, of people who are known.
+/// The people that words mean, of people who are known.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Whom {
     /// The people, by their numbers from 0, in the order of the words.
@@ -75,7 +75,7 @@ pub(crate) fn wishes(text: &str, lexicon: &Lexicon) -> Vec<Wish> {
     found.iter().filter(|part| !part.only_asks()).map(Part::wish).collect()
 }
 
-/// Whom words mean of people of these roles, of whom some were spoken of last.
+/// The people that words mean, of people of these roles, of whom some were spoken of last.
 pub(crate) fn whom(text: &str, known: &[String], last: &[usize], lexicon: &Lexicon) -> Whom {
     let tokens = crate::lex::lex(&unjoined(text), &lexicon.words);
     let mut cast = Cast::of(known, last, lexicon);

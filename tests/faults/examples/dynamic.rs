@@ -41,7 +41,7 @@ pub(super) async fn examples() -> Examples {
         );
         let Ok(mut recording) = socrates_simulation::simulate(setup, &PlannerName::reference()) else { continue };
         let made = (&location, &request, &reading, &proposal, &paths);
-        for mutant in socrates_scoring::mutants::spoiled(&evidence(made, &recording)) {
+        for mutant in socrates_dev::mutants::spoiled(&evidence(made, &recording)) {
             let report = socrates_scoring::score(&evidence(made, &mutant.recording));
             keep(&mut all, report.repair.into_iter().flat_map(|repair| repair.faults));
         }

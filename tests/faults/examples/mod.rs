@@ -25,7 +25,7 @@ use socrates_model::{Fault, FaultCode, Location, Proposal, Request};
 use socrates_prompts::Question;
 use socrates_tests::root;
 
-use crate::plain;
+use super::plain;
 
 /// Codes that are provoked elsewhere, with the test that holds their pages to what it found.
 const ELSEWHERE: &[(FaultCode, &str)] = &[

@@ -308,15 +308,7 @@ fn unanswered(error: &AskError, mut exchange: Exchange) -> Refused {
 fn refused(mut faults: Vec<Fault>, exchange: Exchange) -> Refused {
     faults.sort_by_key(Fault::is_soft);
     let text = (!exchange.answer.trim().is_empty()).then(|| exchange.answer.clone());
-    Refused { class: class_of(&faults), faults, text, retry_after_ms: None, exchange: Box::new(exchange) }
-}
-
-/// The class of the weightiest hard fault: what cannot get better by asking wins, then a wrong answer, then an unreadable one.
-fn class_of(faults: &[Fault]) -> FailureClass {
-    const BY_WEIGHT: [FailureClass; 4] =
-        [FailureClass::Poison, FailureClass::Permanent, FailureClass::Semantic, FailureClass::Unparsable];
-    let classes: Vec<FailureClass> = hard(faults).iter().map(|fault| fault.code.class()).collect();
-    BY_WEIGHT.into_iter().find(|class| classes.contains(class)).unwrap_or(FailureClass::Transient)
+    Refused { class: FailureClass::of(&faults), faults, text, retry_after_ms: None, exchange: Box::new(exchange) }
 }
 
 #[cfg(test)]

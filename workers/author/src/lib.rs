@@ -45,4 +45,4 @@ pub use job::{Asking, AuthorContext, JobAnswer, JobRefusal};
 pub use socrates_llm::{Limits, Rate};
 pub use socrates_prompts::Question;
 
-pub use settings::{Keys, Server, author_for, check, probe};
+pub use settings::{Keys, Recordings, Server, author_for, check, probe};

@@ -55,6 +55,19 @@ pub struct Keys {
     pub plain_http: bool,
     /// What was learned of servers; clones share it.
     pub learned: Learned,
+    /// Whether jobs may name folders of recordings.
+    pub recordings: Recordings,
+}
+
+/// Whether the author of a job may be a folder of recordings on the machine of the worker: `record:`, `replay:` and `cassette:`
+/// make and read files there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Recordings {
+    /// Jobs come from others: their authors are chosen by name alone.
+    #[default]
+    Refused,
+    /// The user of the worker hands in its jobs, as in `socrates run`.
+    Own,
 }
 
 impl Keys {
@@ -112,7 +125,8 @@ const fn dialect(kind: ServerKind) -> Dialect {
 /// The author that a job's settings ask for: `author`, `prompt.…` for the style, and `fault.…` rates for this attempt.
 ///
 /// # Errors
-/// As [`author_for`], [`Style::from_settings`] and [`FaultRates::from_settings`].
+/// `J-REQUEST` for a folder of recordings where [`Recordings`] refuses them; else as [`author_for`], [`Style::from_settings`] and
+/// [`FaultRates::from_settings`].
 pub fn author_of_job(
     settings: &BTreeMap<String, String>,
     keys: &Keys,
@@ -120,7 +134,15 @@ pub fn author_of_job(
 ) -> Result<Box<dyn Author>, AskError> {
     let style = Style::from_settings(settings)
         .map_err(|fault| AskError::new(fault.code, format!("{}: {}", fault.at, fault.message)))?;
-    let author = author_for(settings.get("author").map_or("auto", String::as_str), keys, style)?;
+    let named = read(settings.get("author").map_or("auto", String::as_str))?;
+    if let (Recordings::Refused, Some(folder)) = (keys.recordings, named.folder()) {
+        let message = format!(
+            "the setting `author` of the job is `{named}`, and this worker opens no folder that a job names: `{folder}`; submit with an \
+             author that has a name, such as `offline` or `openai:<model>`; recordings are for `socrates run`"
+        );
+        return Err(AskError::new(FaultCode::JRequest, message));
+    }
+    let author = author_of(&named, keys, style)?;
     let author: Box<dyn Author> = if style.feedback == Telling::Named {
         author
     } else {
@@ -303,6 +325,28 @@ mod tests {
         let gone = Keys { servers: BTreeMap::from([(Dialect::Vllm, server)]), ..Keys::default() };
         assert_eq!(code("record:x=vllm:m", &gone).await, Err(FaultCode::TNet));
         assert_eq!(code("replay:x=vllm:m", &gone).await, Ok(()), "everything may be recorded");
+    }
+
+    #[test]
+    fn a_job_of_others_opens_no_folder_and_one_of_the_own_user_does() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = folder.path().join("tape").display().to_string();
+        let named = |author: &str| BTreeMap::from([("author".to_owned(), author.to_owned())]);
+        let own = Keys { recordings: Recordings::Own, ..Keys::default() };
+        for author in [
+            format!("record:{at}=offline"),
+            format!("replay:{at}=offline"),
+            format!("cassette:{at}"),
+            format!("record:{at}=record:b=offline"),
+        ] {
+            let why = author_of_job(&named(&author), &Keys::default(), 1).err().unwrap();
+            assert_eq!(why.code, FaultCode::JRequest, "{author}");
+            assert!(why.message.contains(&author) && why.message.contains("`author`"), "{}", why.message);
+            assert!(author_of_job(&named(&author), &own, 1).is_ok(), "{author}");
+        }
+        for author in ["offline", "auto", "console:person", "vllm:m"] {
+            assert!(author_of_job(&named(author), &Keys::default(), 1).is_ok(), "{author}");
+        }
     }
 
     #[test]

@@ -89,6 +89,17 @@ mod tests {
     }
 
     #[tokio::test]
+    async fn a_job_of_others_that_names_a_folder_fails_for_good_and_leaves_no_folder() {
+        let tape = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("no-such-tape");
+        for author in ["record", "replay"].map(|kind| format!("{kind}:{}=offline", tape.display())) {
+            let job = Job::detached(spec(&[("author", &author)]), inputs());
+            let failure = ProposalStage::default().run(&job).await.unwrap_err();
+            assert_eq!((failure.class, failure.faults[0].code), (FailureClass::Permanent, FaultCode::JRequest));
+            assert!(!tape.exists(), "{author}");
+        }
+    }
+
+    #[tokio::test]
     async fn a_refused_answer_is_reported_with_its_text() {
         let job = Job::detached(spec(&[("author", "offline"), ("fault.trunc", "1")]), inputs());
         let failure = ProposalStage::default().run(&job).await.unwrap_err();

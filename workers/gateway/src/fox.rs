@@ -18,10 +18,10 @@ mod scene;
 pub mod session;
 pub mod stage;
 
+pub use bytes::Bytes;
 pub use channels::{Topic, Topics};
 pub use client::{BadMessage, Inbound};
 pub use facts::{Door, Facts, Frame, Message};
-pub use foxglove::bytes::Bytes;
 pub use protocol::{Level, SUBPROTOCOLS, pick};
 pub use session::{Ask, Heard, Out, Playback, Session};
 pub use stage::Stage;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::keys;
+use socrates_link::{LinkError, keys};
 use socrates_model::wire::{Beat, BeatReply, BeatVerdict, Grant, Hello, Welcome};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior};
@@ -12,7 +12,8 @@ use crate::error::KitError;
 use crate::held::slot_of;
 use crate::messages::{Worker, left};
 
-/// Beats for as long as the worker lives. Grants that were missed go to `granted`.
+/// Beats until the reign of this worker is over and an orchestrator of another store answers in its place. Grants that were missed
+/// go to `granted`.
 pub(crate) async fn beats(worker: Arc<Worker>, every: Duration, granted: mpsc::Sender<Vec<Grant>>) {
     let mut ticks = tokio::time::interval(every.max(Duration::from_millis(10)));
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -30,6 +31,7 @@ pub(crate) async fn beats(worker: Arc<Worker>, every: Duration, granted: mpsc::S
             Beat { instance: worker.config.instance.clone(), held: worker.held.lines(), draining: worker.is_leaving() };
         let reply: BeatReply = match worker.ask(keys::BEAT, "beat", &beat).await {
             Ok(reply) => reply,
+            Err(LinkError::OtherReign { .. }) if worker.is_outlived() && !worker.is_leaving() => return,
             Err(why) => {
                 tracing::debug!(%why, "a beat did not come through");
                 continue;

@@ -38,13 +38,13 @@ where
 {
     let mut pause = Duration::from_millis(50);
     for _earlier in 1..TRIES {
-        match call_envelope(&**bus, key, kind, request, trace, timeout).await {
+        match call_envelope(&**bus, key, kind, request, (trace, None), timeout).await {
             Err(error) if error.is_transient() => tokio::time::sleep(pause).await,
             settled => return settled.map(|reply| reply.body),
         }
         pause *= 2;
     }
-    Ok(call_envelope(&**bus, key, kind, request, trace, timeout).await?.body)
+    Ok(call_envelope(&**bus, key, kind, request, (trace, None), timeout).await?.body)
 }
 
 /// Fetches an artifact part by part.

@@ -167,9 +167,11 @@ impl Held {
         self.table().entries.iter().map(line).collect()
     }
 
-    /// Attempts that still run.
-    pub(crate) fn running(&self) -> Vec<Slot> {
-        self.table().entries.iter().filter(|(_, entry)| entry.running).map(|(slot, _)| slot.clone()).collect()
+    /// Stops every attempt that still runs.
+    pub(crate) fn stop_all(&self) {
+        for entry in self.table().entries.values().filter(|entry| entry.running) {
+            entry.cancel.stop();
+        }
     }
 
     /// The lease of an attempt was confirmed by a beat sent at `at`.

@@ -41,13 +41,6 @@ impl Job {
         }
     }
 
-    /// The same with the newest refused answer.
-    #[must_use]
-    pub fn with_refused(mut self, text: impl Into<String>) -> Self {
-        self.refused = Some(text.into());
-        self
-    }
-
     /// What is to be done.
     #[must_use]
     pub const fn spec(&self) -> &JobSpec {

@@ -1,12 +1,12 @@
 //! The worker's side of the protocol: one function per message, each repeated with backoff by its caller.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use socrates_link::{Bus, LinkError, call_envelope, keys};
+use socrates_link::{Bus, LinkError, ReignId, call_envelope, keys};
 use socrates_model::job::Stage;
 use socrates_model::seeds::derive_seed;
 use socrates_model::wire::{Hello, Recorded, Release, Report};
@@ -19,6 +19,9 @@ use crate::error::KitError;
 use crate::held::{Held, Slot};
 use crate::spool::{KIND_REPORT, Spool};
 
+/// Beats in a row that an orchestrator of another store has to answer before a worker leaves its reign and serves that one.
+const DISOWNED: u32 = 3;
+
 /// Everything that the tasks of one worker share.
 pub(crate) struct Worker {
     pub(crate) stage: Stage,
@@ -28,8 +31,10 @@ pub(crate) struct Worker {
     pub(crate) spool: Spool,
     /// Inputs that came over the bus.
     pub(crate) inputs: Cache,
-    /// Highest reign seen; replies of lower ones are stale.
-    epoch: AtomicU64,
+    /// The reign that this worker serves; none before its first answer.
+    reign: Mutex<Option<ReignId>>,
+    /// Beats in a row that were answered by an orchestrator of another store and by none of this one's reign.
+    disowned: AtomicU32,
     /// Whether the orchestrator of this reign was not told yet who this worker is.
     unknown: AtomicBool,
     /// Whether it takes no more work.
@@ -81,7 +86,8 @@ impl Worker {
             held: Held::default(),
             spool,
             inputs: Cache::default(),
-            epoch: AtomicU64::new(0),
+            reign: Mutex::new(None),
+            disowned: AtomicU32::new(0),
             unknown: AtomicBool::new(false),
             leaving: watch::Sender::new(false),
             reports: AtomicU32::new(0),
@@ -124,6 +130,35 @@ impl Worker {
         self.unknown.store(true, Ordering::Release);
     }
 
+    fn reign(&self) -> MutexGuard<'_, Option<ReignId>> {
+        self.reign.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether an answer of this reign, to a question for that one, is heard. An orchestrator answers what was asked in its own
+    /// past, so another answer to a question of the reign that is served comes from the next one, which is served from now on. An
+    /// answer to an older question was on its way while the reign changed.
+    fn hears(&self, answered: Option<ReignId>, asked: Option<ReignId>) -> bool {
+        let mut served = self.reign();
+        if answered != *served {
+            if asked != *served {
+                return false;
+            }
+            if served.is_some() {
+                self.stays_unknown();
+            }
+            *served = answered;
+        }
+        drop(served);
+        self.disowned.store(0, Ordering::Release);
+        true
+    }
+
+    /// One more beat was answered by an orchestrator that never knew the reign of this worker; whether it is to be followed. An
+    /// orchestrator that is left over beside the one that reigns is not: the other's answers are heard in between.
+    pub(crate) fn is_outlived(&self) -> bool {
+        self.disowned.fetch_add(1, Ordering::AcqRel).saturating_add(1) >= DISOWNED
+    }
+
     /// One message and its answer; an answer of an earlier reign counts as none.
     pub(crate) async fn ask<Req, Rep>(&self, key: &str, kind: &str, request: &Req) -> Result<Rep, LinkError>
     where
@@ -145,14 +180,11 @@ impl Worker {
         Req: Serialize + Sync,
         Rep: DeserializeOwned,
     {
-        let reply = call_envelope(&*self.bus, key, kind, request, trace, self.config.timeout).await?;
-        let newest = self.epoch.fetch_max(reply.epoch, Ordering::AcqRel);
-        if reply.epoch < newest {
-            tracing::debug!(key, epoch = reply.epoch, newest, "an answer of an earlier orchestrator is not heard");
+        let asked = *self.reign();
+        let reply = call_envelope(&*self.bus, key, kind, request, (trace, asked), self.config.timeout).await?;
+        if !self.hears(reply.reign, asked) {
+            tracing::debug!(key, epoch = reply.epoch, "an answer of an earlier orchestrator is not heard");
             return Err(LinkError::NoReply { key: key.to_owned() });
-        }
-        if newest > 0 && reply.epoch > newest {
-            self.stays_unknown();
         }
         Ok(reply.body)
     }

@@ -24,19 +24,51 @@ const LAST_REPORTS: Duration = Duration::from_secs(2);
 /// Serves a stage until it is asked to stop: says hello, shows its presence token, asks for work, does it,
 /// reports it. Reports left by an earlier process with the same spool are sent first.
 ///
+/// Where an orchestrator of another store answers in the place of the one that was served, or of an older copy of its store, nothing
+/// that is held has a job there: it is dropped, and the worker begins as a new one, with an instance of its own.
+///
 /// # Errors
 /// [`KitError`] when the worker cannot begin, or dies as its fault plan asks.
 pub async fn serve<S: Stage>(
     stage: S,
     bus: Arc<dyn Bus>,
-    config: WorkerConfig,
+    mut config: WorkerConfig,
     mut shutdown: watch::Receiver<Stop>,
 ) -> Result<(), KitError> {
-    let worker = Arc::new(Worker::new(S::STAGE, bus, config)?);
+    let stage = Arc::new(stage);
+    loop {
+        let worker = Worker::new(S::STAGE, Arc::clone(&bus), config.clone())?;
+        match serve_store(Arc::clone(&stage), Arc::new(worker), &mut shutdown).await? {
+            Departure::Asked => return Ok(()),
+            Departure::OtherStore => {
+                tracing::warn!(
+                    worker = config.instance,
+                    "an orchestrator of another job store, or of an older copy, answers: what was held is dropped, and it is served"
+                );
+                config.instance = uuid::Uuid::new_v4().to_string();
+            }
+        }
+    }
+}
+
+/// Why a store is served no longer.
+enum Departure {
+    /// The worker was asked to stop.
+    Asked,
+    /// An orchestrator of another store answers.
+    OtherStore,
+}
+
+/// Serves the orchestrators of one store, one after another.
+async fn serve_store<S: Stage>(
+    stage: Arc<S>,
+    worker: Arc<Worker>,
+    shutdown: &mut watch::Receiver<Stop>,
+) -> Result<Departure, KitError> {
     let leftovers = worker.spool.leftovers()?;
     let welcomed = tokio::select! {
         biased;
-        () = stopping(&mut shutdown) => return Ok(()),
+        () = stopping(shutdown) => return Ok(Departure::Asked),
         welcomed = hello(&worker) => welcomed,
     };
     let beat_every = welcomed?;
@@ -58,11 +90,16 @@ pub async fn serve<S: Stage>(
         Ok(())
     });
 
-    let stage = Arc::new(stage);
     loop {
         tokio::select! {
             biased;
-            () = stopping(&mut shutdown) => break,
+            () = stopping(shutdown) => break,
+            Some(_ended) = service.join_next() => {
+                // Stages that block look for it; the others end where they wait.
+                worker.held.stop_all();
+                attempts.shutdown().await;
+                return Ok(Departure::OtherStore);
+            }
             Some(ended) = attempts.join_next() => settled(ended)?,
             Some(batch) = grants.recv() => {
                 for grant in batch {
@@ -79,11 +116,11 @@ pub async fn serve<S: Stage>(
         }
     }
     worker.leave();
-    finish(&worker, &mut attempts, &mut grants, &mut shutdown).await?;
+    finish(&worker, &mut attempts, &mut grants, shutdown).await?;
     hand_back(&worker, &mut attempts, &mut asking, &mut grants).await?;
     service.shutdown().await;
     drop(token);
-    Ok(())
+    Ok(Departure::Asked)
 }
 
 /// Ends when the worker is asked to stop, or nobody is left who could ask.
@@ -227,11 +264,7 @@ async fn hand_back(
     asking: &mut JoinSet<()>,
     grants: &mut mpsc::Receiver<Vec<Grant>>,
 ) -> Result<(), KitError> {
-    for slot in worker.held.running() {
-        if let Some(entry) = worker.held.entry(&slot) {
-            entry.cancel.stop();
-        }
-    }
+    worker.held.stop_all();
     let last = async {
         while !(attempts.is_empty() && asking.is_empty()) {
             tokio::select! {

@@ -34,8 +34,6 @@ pub mod media {
     pub const PNG: &str = "image/png";
     /// A drawing.
     pub const SVG: &str = "image/svg+xml";
-    /// A page.
-    pub const HTML: &str = "text/html";
 }
 
 /// One output of a job.
@@ -139,22 +137,10 @@ impl Failure {
         Self { class, faults, artifacts: Vec::new(), retry_after_ms: None, tokens: (0, 0), rates: None }
     }
 
-    /// A failure whose class is that of its weightiest hard fault: what cannot get better wins over what can,
-    /// and a wrong answer over a passing trouble.
+    /// A failure of the class that its faults give, see [`FailureClass::of`].
     #[must_use]
     pub fn from_faults(faults: Vec<Fault>) -> Self {
-        const BY_WEIGHT: [FailureClass; 7] = [
-            FailureClass::Permanent,
-            FailureClass::Poison,
-            FailureClass::Semantic,
-            FailureClass::Unparsable,
-            FailureClass::Overload,
-            FailureClass::WorkerDeath,
-            FailureClass::Transient,
-        ];
-        let has = |class: FailureClass| faults.iter().any(|fault| !fault.is_soft() && fault.code.class() == class);
-        let class = BY_WEIGHT.into_iter().find(|class| has(*class)).unwrap_or(FailureClass::Semantic);
-        Self::new(class, faults)
+        Self::new(FailureClass::of(&faults), faults)
     }
 
     /// The same with one more artifact.
@@ -188,20 +174,5 @@ impl From<Fault> for Failure {
 impl From<Vec<Fault>> for Failure {
     fn from(faults: Vec<Fault>) -> Self {
         Self::from_faults(faults)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_weightiest_hard_fault_gives_the_class() {
-        let fault = |code| Fault::new(code, "x", "y");
-        let of = |codes: &[FaultCode]| Failure::from_faults(codes.iter().copied().map(fault).collect()).class;
-        assert_eq!(of(&[FaultCode::TNet, FaultCode::GDisc]), FailureClass::Semantic);
-        assert_eq!(of(&[FaultCode::GDisc, FaultCode::PContra]), FailureClass::Permanent);
-        // A soft permanent fault is only a warning.
-        assert_eq!(of(&[FaultCode::PRead, FaultCode::TNet]), FailureClass::Transient);
     }
 }

@@ -1,7 +1,10 @@
 //! A worker against an orchestrator of a few lines.
 #![expect(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests may fail the test")]
 
-use std::collections::{BTreeMap, VecDeque};
+#[path = "worker/stores.rs"]
+mod stores;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
@@ -11,7 +14,7 @@ use socrates_kit::{
     BlobMove, Blobs, Done, Failure, FaultPlan, Job, KitError, LocalBlobs, Output, Stage, Stop, WorkerConfig, media,
     serve, serve_blobs,
 };
-use socrates_link::{Bus, MemoryBus, Qos, keys};
+use socrates_link::{Ask, Bus, MemoryBus, Qos, ReignId, keys};
 use socrates_model::job::{Item, JobKey, JobSpec};
 use socrates_model::wire::{
     Acquire, Acquired, Beat, BeatReply, BeatVerdict, Grant, Hello, NoWork, Outcome, Recorded, Release, Report, Welcome,
@@ -63,9 +66,35 @@ struct Office {
     beats: u32,
     /// Reigns after the first.
     reigns: u64,
+    /// Number of the store; each has reigns of its own.
+    store: u64,
+    /// Workers that asked for work of this store.
+    instances: BTreeSet<String>,
+    /// Questions of workers of other stores.
+    disowned: u32,
+    /// The orchestrator of another store answers two of three beats.
+    intruded: bool,
+    beaten: u32,
     hellos: u32,
     /// A job that is handed back is granted again at once, to whoever asks.
     eager: bool,
+}
+
+impl Office {
+    /// Reign `epoch` of the store.
+    fn reign(&self, epoch: u64) -> ReignId {
+        ReignId(100 * self.store + epoch)
+    }
+
+    /// Whether a worker of that reign is one of this store, in this state or an earlier one.
+    fn knows(&self, asked: ReignId) -> bool {
+        (1..=1 + self.reigns).any(|epoch| self.reign(epoch) == asked)
+    }
+}
+
+/// The reign that a question is for.
+fn asked_in(ask: &Ask) -> Option<ReignId> {
+    ask.read::<serde::de::IgnoredAny>(ask.key().rsplit('/').next().unwrap()).unwrap().reign
 }
 
 /// Serves the worker protocol the way the orchestrator would.
@@ -76,7 +105,21 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
         let mut all = bus.serve("rpc/*").await.unwrap();
         while let Some(ask) = all.next().await {
             let key = ask.key().to_owned();
-            let reign = 1 + shared.lock().unwrap().reigns;
+            let (reign, id, known) = {
+                let mut office = shared.lock().unwrap();
+                let reign = 1 + office.reigns;
+                let beaten = key == keys::BEAT && office.intruded;
+                office.beaten += u32::from(beaten);
+                let intruder = beaten && !office.beaten.is_multiple_of(3);
+                let known = asked_in(&ask).is_none_or(|asked| office.knows(asked)) && !intruder;
+                office.disowned += u32::from(!known);
+                (reign, office.reign(reign), known)
+            };
+            let ask = ask.in_reign(id);
+            if !known {
+                ask.disown("office", reign).await.unwrap();
+                continue;
+            }
             match key.as_str() {
                 keys::HELLO => {
                     ask.read::<Hello>("hello").unwrap();
@@ -90,6 +133,7 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                     let reply = {
                         let mut office = shared.lock().unwrap();
                         office.asked.push(acquire.req_id.clone());
+                        office.instances.insert(acquire.instance);
                         let known = office.granted.get(&acquire.req_id).cloned();
                         let grants = known.unwrap_or_else(|| {
                             let credits = office.open.len().min(acquire.credits as usize);
@@ -129,14 +173,17 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                         office.traces.push(envelope.traceparent);
                         let same = |r: &Report| r.key == report.key && r.attempt == report.attempt;
                         let known = office.reports.iter().any(same);
-                        if !known {
+                        let granted = office.instances.contains(&report.instance);
+                        if granted && !known {
                             office.reports.push(report);
                         }
                         if office.lose_reports > 0 {
                             office.lose_reports -= 1;
                             None
-                        } else {
+                        } else if granted {
                             Some(if known { Recorded::Duplicate } else { Recorded::Accepted })
+                        } else {
+                            Some(Recorded::Late)
                         }
                     };
                     if let Some(recorded) = recorded {

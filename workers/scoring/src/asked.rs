@@ -8,8 +8,8 @@ use socrates_model::{
     Rule, Trigger, Verdict,
 };
 
+use crate::cases::{Case, corridor, must, proposal};
 use crate::fixture::{Walk, event, floor, node, paths, recording};
-use crate::scenarios::{Case, corridor, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 
@@ -190,6 +190,38 @@ fn a_must_that_cannot_be_judged_is_told_and_not_counted_as_seen() {
     );
     let counted: Vec<usize> = report.verdict_text.split(' ').filter_map(|word| word.parse().ok()).take(2).collect();
     assert_eq!(counted[0] + 1, counted[1], "{}", report.verdict_text);
+}
+
+#[test]
+fn a_run_is_not_realised_while_a_wish_cannot_be_judged() {
+    let robot = || Walk::robot(1.4, -8., 0., 0.8);
+    let out = || Walk::human_through(1, &[(0., 7., 0.), (6., 7., 0.), (12., 0.4, 0.), (20., 0.4, -8.)]);
+    let run = recording(&[robot(), out()], 20.0, 0.01);
+    let wish = |source: &str| {
+        let mut case = from_a_room();
+        case.plan.expected_events[0].source = source.to_owned();
+        let kind = FactKind::Relates { human: H1, relation: Relation::Leaving };
+        let fact = Fact { id: "f1".into(), kind, quote: "comes out of the ward".into() };
+        case.reading = Some(Reading { facts: vec![fact], ..asked_to_give_way().reading.unwrap() });
+        case
+    };
+    assert_eq!(wish("f1").judge(&run).verdict, Verdict::Realised, "{}", wish("f1").judge(&run).verdict_text);
+
+    let mut without_a_room = wish("f1");
+    // A corridor is no room that a person could come out of.
+    without_a_room.place.graph = without_a_room.place.graph.edited(|nodes, _| nodes[0].kind = "CORRIDOR".into());
+    let report = without_a_room.judge(&run);
+    assert_eq!((report.verdict, report.score), (Verdict::Invalid, 0.0), "{}", report.verdict_text);
+    let start = "1 wish cannot be judged: `comes out of the ward` · 0 of 1 wishes seen, by ";
+    assert!(report.verdict_text.starts_with(start), "{}", report.verdict_text);
+    assert!(report.verdict_text.contains("declares no doors"), "{}", report.verdict_text);
+
+    // A clause that tells of no wish takes nothing from the request.
+    let mut unasked = wish("auto");
+    unasked.place = without_a_room.place;
+    let report = unasked.judge(&run);
+    assert_eq!(report.verdict, Verdict::Realised, "{}", report.verdict_text);
+    assert!(!report.verdict_text.contains("wishes seen"), "{}", report.verdict_text);
 }
 
 #[test]

@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use socrates_model::report::Standing;
 use socrates_model::{AgentId, Clause, ClauseRole, GroupId, HumanId, Predicate, Report};
 
+use crate::cases::{Case, corridor, group_of, must, proposal};
 use crate::fixture::{Walk, event, floor, paths, recording};
-use crate::scenarios::{Case, corridor, elevator, group_of, must, proposal};
+use crate::scenarios::elevator;
 
 const H1: HumanId = HumanId::new(1);
 

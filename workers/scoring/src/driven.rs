@@ -4,8 +4,8 @@ use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::Standing;
 use socrates_model::{Action, HumanId, Predicate, Recording, Rule, Trigger};
 
+use crate::cases::{Case, corridor, must, proposal};
 use crate::fixture::{Walk, paths, recording};
-use crate::scenarios::{Case, corridor, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 /// Leaves of the fixture.

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use socrates_model::report::Standing;
 use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId, Predicate, Recording, Relation, Rule, Trigger};
 
+use crate::cases::{Case, corridor, must, proposal};
 use crate::fidelity::standing_of;
 use crate::fixture::{Walk, event, paths, recording};
-use crate::scenarios::{Case, corridor, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 

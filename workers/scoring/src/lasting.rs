@@ -4,8 +4,8 @@ use socrates_model::reading::{Fact, FactKind};
 use socrates_model::report::Standing;
 use socrates_model::{Action, AgentId, FORMAT, HumanId, Predicate, Reading, Relation, Report, Rule, Trigger, Verdict};
 
+use crate::cases::{Case, corridor, must, proposal};
 use crate::fixture::{Walk, paths, recording};
-use crate::scenarios::{Case, corridor, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 const H2: HumanId = HumanId::new(2);

@@ -25,7 +25,6 @@ mod tracks;
 pub mod compare;
 pub mod fidelity;
 pub mod metrics;
-pub mod mutants;
 pub mod temporal;
 
 mod narrative;
@@ -37,6 +36,8 @@ mod stage;
 
 #[cfg(test)]
 mod asked;
+#[cfg(test)]
+mod cases;
 #[cfg(test)]
 mod crowds;
 #[cfg(test)]
@@ -50,22 +51,16 @@ mod lasting;
 #[cfg(test)]
 mod meetings;
 #[cfg(test)]
-mod reasons;
-#[cfg(test)]
 mod room;
 #[cfg(test)]
 mod scenarios;
 #[cfg(test)]
 mod script;
-#[cfg(test)]
-mod signs;
-#[cfg(test)]
-mod steps;
 
 pub use doubts::doubts;
 pub use evidence::Evidence;
 pub use pool::{Cell, Pool, PoolFault, PooledRun, Ranking, pool};
-pub use score::score;
+pub use score::{score, verdict_of};
 pub use series::{Series, Span};
 #[cfg(feature = "mcap")]
 pub use stage::ScoringStage;

@@ -5,8 +5,8 @@ use socrates_model::{
     Encounter, EventKind, Fact, FactKind, FaultCode, HumanId, Location, Predicate, Reading, Recording, Report, Verdict,
 };
 
+use crate::cases::{Case, must, proposal};
 use crate::fixture::{Walk, event, floor, node, paths, recording};
-use crate::scenarios::{Case, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 

@@ -3,8 +3,8 @@
 use socrates_model::report::Standing;
 use socrates_model::{Action, GroupId, HumanId, Predicate, Recording, Relation, Rule, Trigger};
 
+use crate::cases::{Case, corridor, group_of, must, proposal};
 use crate::fixture::{Walk, paths, recording};
-use crate::scenarios::{Case, corridor, group_of, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 /// Leaves of the fixture.

@@ -64,7 +64,10 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
 }
 
 /// The verdict on what was played, without metrics.
-pub(crate) fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
+///
+/// # Errors
+/// A recording whose tracks cannot be read.
+pub fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
     let tracks = Tracks::read(evidence.recording)?;
     let signals = Signals::new(evidence, &tracks);
     let judged = judge(&signals);

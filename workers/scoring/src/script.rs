@@ -4,8 +4,8 @@ use socrates_model::report::Standing;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Action, AgentId, ClauseResult, EventKind, Gesture, HumanId, Predicate, Recording, Rule, Trigger};
 
+use crate::cases::{Case, corridor, must, proposal};
 use crate::fixture::{Walk, event, node, paths, recording};
-use crate::scenarios::{Case, corridor, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
 const H2: HumanId = HumanId::new(2);

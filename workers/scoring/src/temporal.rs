@@ -99,35 +99,6 @@ impl Signal {
         found
     }
 
-    /// Time robustness of each sample, s: for how long before or after it the verdict stays what it is at the
-    /// sample. Unknown for unknown samples; infinite where the verdict never changes.
-    #[must_use]
-    pub fn time_robustness(&self) -> Self {
-        let mut nearest = vec![f64::INFINITY; self.values.len()];
-        // Once forward for the last change before, once backward for the next one after.
-        for backward in [false, true] {
-            let mut other: [Option<f64>; 2] = [None, None];
-            let order: Box<dyn Iterator<Item = usize>> =
-                if backward { Box::new((0..self.values.len()).rev()) } else { Box::new(0..self.values.len()) };
-            for k in order {
-                let (Some(t), Some(value)) = (self.times_s.get(k), self.values.get(k)) else { continue };
-                let Some(slot) = nearest.get_mut(k) else { continue };
-                if value.is_nan() {
-                    *slot = f64::NAN;
-                    continue;
-                }
-                let holds = usize::from(*value >= 0.0);
-                if let Some(changed) = other.get(1 - holds).copied().flatten() {
-                    *slot = slot.min((t - changed).abs());
-                }
-                if let Some(seen) = other.get_mut(holds) {
-                    *seen = Some(*t);
-                }
-            }
-        }
-        Self { times_s: self.times_s.clone(), values: nearest }
-    }
-
     /// What does not hold.
     #[must_use]
     pub fn not(&self) -> Self {
@@ -379,16 +350,6 @@ mod tests {
         assert_eq!(signal.always(far).now(), Some(f64::INFINITY));
         assert_eq!(signal.eventually(far).now(), Some(f64::NEG_INFINITY));
         assert_eq!(signal.always(Within::secs(9.0)).now(), Some(-1.0));
-    }
-
-    #[test]
-    fn time_robustness_is_the_way_to_the_next_change() {
-        let signal: Signal =
-            [(0.0, 1.0), (1.0, 1.0), (2.0, -1.0), (3.0, -1.0), (4.0, f64::NAN), (5.0, 1.0)].into_iter().collect();
-        let found: Vec<f64> = signal.time_robustness().values;
-        assert!(same(&found, &[2.0, 1.0, 1.0, 2.0, f64::NAN, 2.0]), "{found:?}");
-        let whole: Signal = [(0.0, 1.0), (1.0, 2.0)].into_iter().collect();
-        assert_eq!(whole.time_robustness().now(), Some(f64::INFINITY));
     }
 
     #[test]

@@ -27,7 +27,6 @@ mod ways;
 mod runs;
 
 pub use simulate::{Driven, setup, simulate, simulate_into};
-pub use socrates_engine::{Keeper, Onlooker};
 #[cfg(feature = "mcap")]
 pub use stage::Simulation;
 pub use summary::Summary;

@@ -1,4 +1,4 @@
-//! Whole runs on the shipped locations with the reference robot: many ways, every relation.
+//! Whole runs on the shipped locations with the reference robot: an elevator, a group, the same setup twice.
 
 use std::collections::BTreeMap;
 
@@ -167,51 +167,6 @@ fn relations(location: &Location, way: &[NodeId]) -> Vec<(&'static str, Vec<Cast
         }
     }
     all
-}
-
-#[test]
-fn on_every_shipped_map_the_reference_arrives_and_meets_who_it_should() {
-    let mut lines = Vec::new();
-    let mut gaps: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    let (mut runs, mut bad) = (0, 0);
-    let mut spent = std::time::Duration::ZERO;
-    let mut simulated = 0.0;
-    for name in socrates_maps::shipped::names() {
-        let location = socrates_maps::shipped::load(name).unwrap();
-        for way in ways(&location, 37) {
-            for (relation, cast, node) in relations(&location, &way) {
-                let made = scenario(&location, way.clone(), cast, std::slice::from_ref(&node), vec![], false);
-                // One behind the other they pass the node one after the other.
-                let loose = if relation == "ahead" || relation == "behind" { 4.0 } else { 1.5 };
-                let start = std::time::Instant::now();
-                let recording = simulate(made, &"reference".parse().unwrap()).unwrap();
-                spent += start.elapsed();
-                simulated += recording.ticks() as f64 * 0.01;
-                runs += 1;
-                let found = troubles(&recording, 1, loose);
-                if let Some(gap) = Summary::of(&recording).encounter_gaps_s.values().next() {
-                    gaps.entry(relation).or_default().push(*gap);
-                }
-                if !found.is_empty() {
-                    bad += 1;
-                    let (from, to) = (&way[0], &way[way.len() - 1]);
-                    lines.push(format!("{name} {relation} {from} → {to} at {node}: {}", found.join(" · ")));
-                }
-            }
-        }
-    }
-    println!("{}", lines.join("\n"));
-    for (relation, gaps) in &mut gaps {
-        gaps.sort_by(f64::total_cmp);
-        println!("{relation}: median gap {:.2} s of {}", gaps[gaps.len() / 2], gaps.len());
-    }
-    println!(
-        "{bad} of {runs} runs with troubles; {:.1} ms a run, {:.1} s simulated on average",
-        spent.as_secs_f64() * 1e3 / f64::from(runs),
-        simulated / f64::from(runs)
-    );
-    assert!(runs > 30);
-    assert!(f64::from(bad) <= 0.15 * f64::from(runs), "{bad} of {runs}");
 }
 
 fn startled() -> Rule {

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use socrates_engine::{Drivers, Engine, HumanModel, Keeper, Onlooker, Setup};
+use socrates_engine::{Drivers, Engine, HumanModel, Setup};
 use socrates_maps::DistanceField;
 use socrates_maps::openings::Enclosures;
 use socrates_model::driver::{Commands, Told};
 use socrates_model::{
-    AgentId, Behaviors, Fault, FaultCode, HumanId, Location, NodeId, Paths, PersonModel, PlannerName, Proposal,
-    Recording, Request, RobotDriver, RunId,
+    AgentId, Behaviors, Fault, FaultCode, HumanId, Keeper, Location, NodeId, Onlooker, Paths, PersonModel, PlannerName,
+    Proposal, Recording, Request, RobotDriver, RunId,
 };
 use socrates_planners::{Mission, make};
 

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use socrates_engine::{Onlooker, Setup};
+use socrates_engine::Setup;
 use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
 use socrates_model::live::LiveEnd;
 use socrates_model::{
-    AgentState, Digest, Event, FailureClass, Fault, FaultCode, Location, PlannerName, Reading, RecordingHeader,
-    Request, Role, RunId, Where, fault,
+    AgentState, Digest, Event, FailureClass, Fault, FaultCode, Location, Onlooker, PlannerName, Reading,
+    RecordingHeader, Request, Role, RunId, Where, fault,
 };
 use socrates_stream::mcap::{Tape, Writer};
-use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, SharedMemory, ShmHost, StreamError};
+use socrates_stream::{Linger, LiveSink, SharedMemory, ShmHost, StreamError};
 use tokio::runtime::Handle;
 
 use crate::driving::{Drive, Mode, OverBus};
@@ -122,7 +122,7 @@ impl Scribe {
 /// Hands a run to whoever writes it down and to its viewers, and keeps the pace.
 struct Viewers {
     scribe: Scribe,
-    sinks: Fanout,
+    sinks: Vec<Box<dyn Onlooker + Send>>,
     pace: Pace,
     start: Instant,
     cancel: Cancel,
@@ -132,7 +132,7 @@ struct Viewers {
 impl Onlooker for Viewers {
     fn announce(&mut self, header: &RecordingHeader) {
         self.scribe.announce(header);
-        self.sinks.announce(header);
+        self.sinks.iter_mut().for_each(|sink| sink.announce(header));
         self.start = Instant::now();
     }
 
@@ -140,10 +140,7 @@ impl Onlooker for Viewers {
         let tick = states.first().map_or(0, |state| state.tick);
         // First what is kept: whom a viewer asks for an older tick is the recording.
         self.scribe.tick(states, events);
-        self.sinks.tick(tick, states);
-        for event in events {
-            self.sinks.event(event);
-        }
+        self.sinks.iter_mut().for_each(|sink| sink.tick(states, events));
         let left = self.pace.left(self.start, tick + 1);
         // Short waits are gathered; a canceled run is played to its end without waiting.
         if left > Duration::from_millis(2) && !self.cancel.is_stopped() {
@@ -168,18 +165,18 @@ async fn viewers(
         "shm" => (false, true),
         _ => (true, true),
     };
-    let mut sinks = Fanout::new(Vec::new());
+    let mut sinks: Vec<Box<dyn Onlooker + Send>> = Vec::new();
     let mut shared = SharedMemory::default();
     // Announced before the bus, which then tells whether it is there.
     if shm && let Some((sink, place)) = stage.shm.sink(run) {
-        sinks.add(sink);
+        sinks.push(sink);
         shared = place;
     }
     if bus {
         let has_robot = job.spec().run().is_none_or(|run| !run.planner.is_no_robot());
         let told = scene(setup, has_robot, job.spec(), pace);
         match LiveSink::open(Arc::clone(&job.live_bus()), run, told, tape.clone(), &stage.linger).await {
-            Ok(sink) => sinks.add(Box::new(sink.sharing(shared))),
+            Ok(sink) => sinks.push(Box::new(sink.sharing(shared))),
             // Viewers never decide about a run.
             Err(why) => tracing::warn!(%run, %why, "nobody can watch this run over the bus"),
         }
@@ -214,7 +211,7 @@ impl Stage for Simulation {
                 done.artifacts.push(Output::json(Role::Commands, &commands)?);
             }
             // The recording is whole before the run is over for its viewers: what they ask for from now on is in it.
-            sinks.end(&end);
+            sinks.iter_mut().for_each(|sink| sink.end(&end));
             Ok(done)
         });
         match work.await {

@@ -7,6 +7,7 @@ mod access;
 mod both_ways;
 #[cfg(feature = "zenoh")]
 mod deployment;
+mod endpoints;
 mod messages;
 mod promises;
 #[cfg(feature = "zenoh")]

@@ -110,6 +110,15 @@ impl AuthorSpec {
         }
     }
 
+    /// The first folder of recordings that it names; nothing for authors that are chosen by a name alone.
+    #[must_use]
+    pub fn folder(&self) -> Option<&str> {
+        match self {
+            Self::Auto | Self::Offline | Self::Server(..) => None,
+            Self::Cassette(folder) | Self::Record(folder, _) | Self::Replay(folder, _) => Some(folder),
+        }
+    }
+
     /// The server with its model in an author that was read before and is kept as text: what [`AuthorSpec::server`] finds, as
     /// one word and without reading it anew.
     #[must_use]
@@ -193,6 +202,15 @@ mod tests {
             author.server().map(|(kind, model)| format!("{}:{model}", kind.name()))
         };
         assert_eq!(asked("replay:a=record:b=vllm:m").as_deref(), Some("vllm:m"));
+        let folder = |text: &str| text.parse::<AuthorSpec>().unwrap().folder().map(str::to_owned);
+        for (text, named) in
+            [("cassette:/a", "/a"), ("record:../b=offline", "../b"), ("replay:c=record:d=offline", "c")]
+        {
+            assert_eq!(folder(text).as_deref(), Some(named), "{text}");
+        }
+        for text in ["auto", "offline", "console:person", "ollama:llama3:8b"] {
+            assert_eq!(folder(text), None, "{text}");
+        }
         assert_eq!(asked("record:tape=offline"), None);
         for text in
             ["auto", "offline", "cassette:a", "record:a=cassette:b", "gemini:m", "replay:a=record:b=ollama:l:8b"]

@@ -12,8 +12,9 @@ use socrates_model::{Digest, Location, SimTime};
 
 use super::scene::{self, Painter, Picture};
 use super::tape::Stretch;
-use super::{AGENTS, END, EVENTS, End, HEADER, proto};
+use super::{AGENTS, END, EVENTS, End, HEADER};
 use crate::error::StreamError;
+use crate::foxglove::{self, Proto};
 
 /// Ticks between two pictures: ten a second.
 const PICTURE_EVERY: u64 = 10;
@@ -40,8 +41,9 @@ const RECORD: [(&str, usize, &str, &str); 9] = [
     ("omega", 56, "float64", "rad/s"),
 ];
 
-/// What a reader has to know of the records of a tick: JSON Schema, with the place of each field in the record.
-fn record_schema() -> String {
+/// JSON Schema of the records of a tick, with the place of each field in the record; `order` names the order of the agents.
+#[must_use]
+pub fn record_schema(order: &str) -> String {
     let fields: Vec<String> = RECORD
         .iter()
         .map(|(name, offset, format, what)| {
@@ -50,7 +52,7 @@ fn record_schema() -> String {
         })
         .collect();
     format!(
-        r#"{{"title":"socrates.AgentState.v1","description":"every agent of one tick, in the order of the header: records of {AGENT_STATE_BYTES} bytes one after the other, little endian","type":"array","x-record-bytes":{AGENT_STATE_BYTES},"x-byte-order":"little","items":{{"type":"object","properties":{{{}}}}}}}"#,
+        r#"{{"title":"socrates.AgentState.v1","description":"every agent of one tick{order}: records of {AGENT_STATE_BYTES} bytes one after the other, little endian","type":"array","x-record-bytes":{AGENT_STATE_BYTES},"x-byte-order":"little","items":{{"type":"object","properties":{{{}}}}}}}"#,
         fields.join(",")
     )
 }
@@ -86,7 +88,7 @@ impl<W: Write> Pen<W> {
 
     /// A channel of messages of package `foxglove`.
     fn picture_channel(&mut self, topic: &str, name: &str) -> Result<u16, McapError> {
-        let (full, description) = (format!("foxglove.{name}"), proto::description(name));
+        let (full, description) = (format!("foxglove.{name}"), foxglove::description(name));
         self.channel(topic, "protobuf", (&full, "protobuf", &description))
     }
 
@@ -104,7 +106,7 @@ impl<W: Write> Pen<W> {
     }
 
     /// Writes a picture, unless it has nothing new.
-    fn picture(&mut self, channel_id: u16, time: SimTime, picture: &proto::Proto) -> Result<(), McapError> {
+    fn picture(&mut self, channel_id: u16, time: SimTime, picture: &Proto) -> Result<(), McapError> {
         if picture.is_empty() { Ok(()) } else { self.message(channel_id, time, picture.bytes()) }
     }
 }
@@ -161,7 +163,7 @@ impl<W: Write> Writer<W> {
             .chunk_size(None);
         let mut pen = Pen { writer: options.create(NoSeek::new(out))?, sequences: BTreeMap::new() };
         let first = pen.json_channel(HEADER, "socrates.Header")?;
-        let schema = record_schema();
+        let schema = record_schema(", in the order of the header");
         let channels = Channels {
             agents: pen.channel(
                 AGENTS,
@@ -178,9 +180,9 @@ impl<W: Write> Writer<W> {
         let map = pen.picture_channel("/map", "Grid")?;
         pen.json(first, SimTime::ZERO, header)?;
         if let Some(location) = location {
-            if let Some(grid) = scene::grid(location) {
-                pen.picture(map, SimTime::ZERO, &grid)?;
-            }
+            let mut floor = Proto::default();
+            foxglove::occupancy(&mut floor, &location.grid);
+            pen.picture(map, SimTime::ZERO, &floor)?;
             pen.picture(channels.scene, SimTime::ZERO, &scene::walls(location))?;
         }
         Ok(Self {

@@ -1,12 +1,9 @@
 //! How much longer the ways of one annotation are on another.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use serde::Serialize;
 use socrates_maps::Ground;
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{Location, Point};
+use socrates_model::{GraphNode, Location, NodeId, Point};
 
 /// A graph is entered this near to a place at most, m.
 const ENTER_M: f64 = 8.0;
@@ -103,42 +100,11 @@ fn entry(location: &Location, at: &Point) -> Option<Entry> {
 /// Lengths of the shortest ways between all nodes, m.
 fn lengths(location: &Location) -> Vec<Vec<f64>> {
     let graph = &location.graph;
-    let count = graph.nodes().len();
-    let mut next: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
-    for edge in graph.edges() {
-        let ends = graph.position(&edge.from).zip(graph.position(&edge.to));
-        let length = graph.edge_length_m(&edge.from, &edge.to);
-        if let (Some((a, b)), Some(length)) = (ends, length) {
-            for (one, other) in [(a, b), (b, a)] {
-                if let Some(list) = next.get_mut(one) {
-                    list.push((other, length));
-                }
-            }
-        }
-    }
-    let from = |start: usize| {
-        let mut away = vec![f64::INFINITY; count];
-        let mut open = BinaryHeap::from([Reverse((0_u64, start))]);
-        if let Some(slot) = away.get_mut(start) {
-            *slot = 0.0;
-        }
-        while let Some(Reverse((bits, here))) = open.pop() {
-            let so_far = f64::from_bits(bits);
-            if away.get(here).is_none_or(|known| so_far > *known) {
-                continue;
-            }
-            for (to, length) in next.get(here).into_iter().flatten() {
-                let total = so_far + length;
-                if let Some(known) = away.get_mut(*to)
-                    && total < *known
-                {
-                    *known = total;
-                    // Bits of floats that are not negative sort as the floats do.
-                    open.push(Reverse((total.to_bits(), *to)));
-                }
-            }
-        }
-        away
+    let edge_m = |pair: &[NodeId]| if let [a, b] = pair { graph.edge_length_m(a, b) } else { None };
+    let away = |from: &GraphNode, to: &GraphNode| {
+        let way = graph.shortest(&from.id, &to.id)?;
+        way.windows(2).map(edge_m).sum::<Option<f64>>()
     };
-    (0..count).map(from).collect()
+    let row = |from| graph.nodes().iter().map(|to| away(from, to).unwrap_or(f64::INFINITY)).collect();
+    graph.nodes().iter().map(row).collect()
 }

@@ -30,7 +30,8 @@
 
   // The figures: a card per metric, a line per planner.
   const tidy = (x) => Math.abs(x) >= 100 ? x.toFixed(0) : Math.abs(x) >= 10 ? x.toFixed(1) : x.toFixed(2);
-  const ends = (e) => e ? ` [${tidy(e[0])}, ${tidy(e[1])}]` : "";
+  const figure = (x, row) => row.decimals > 2 ? x.toFixed(row.decimals) : tidy(x);
+  const ends = (e, row) => e ? ` [${figure(e[0], row)}, ${figure(e[1], row)}]` : "";
   const sign = (x) => (x > 0 ? "+" : x < 0 ? "−" : "") + tidy(Math.abs(x));
   for (const row of data.rows) {
     const card = word("article", "", at("figures")), title = word("details", "", card), head = word("summary", "", title);
@@ -45,14 +46,14 @@
     row.means.forEach((m, i) => {
       const line = word("tr", "", body), who = word("th", "", line);
       who.scope = "row"; word("i", "", who, "dot").style.background = ink(i); who.appendChild(document.createTextNode(name(i)));
-      const svg = make("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": `${name(i)}: ${tidy(m.mean)}${ends(m.interval)}` }, word("td", "", line, "strip"));
+      const svg = make("svg", { viewBox: `0 0 ${W} ${H}`, role: "img", "aria-label": `${name(i)}: ${figure(m.mean, row)}${ends(m.interval, row)}` }, word("td", "", line, "strip"));
       make("line", { x1: pad, x2: W - pad, y1: H / 2, y2: H / 2, stroke: "#dde1e6" }, svg);
       if (low < 0 && high > 0) make("line", { x1: x(0), x2: x(0), y1: 0, y2: H, stroke: "#8b949e", "stroke-dasharray": "2 3" }, svg);
       m.parts.forEach((v, k) => make("circle", { cx: x(v), cy: H / 2 + ((k * 7) % 5 - 2) * 1.6, r: 2, fill: ink(i), opacity: 0.35 }, svg));
       if (m.interval) make("line", { x1: x(m.interval[0]), x2: x(m.interval[1]), y1: H / 2, y2: H / 2, stroke: ink(i), "stroke-width": 3.5, "stroke-linecap": "round" }, svg);
       make("circle", { cx: x(m.mean), cy: H / 2, r: 5, fill: ink(i), stroke: "#fff", "stroke-width": 1.5 }, svg);
       const told = word("td", "", line, "n");
-      word("div", tidy(m.mean) + ends(m.interval), told);
+      word(row.marked === i ? "b" : "div", figure(m.mean, row) + ends(m.interval, row), told);
       if (m.difference) { const [d, e] = m.difference, clear = e && (e[0] > 0 || e[1] < 0); word("div", "Δ " + sign(d) + (e ? ` [${sign(e[0])}, ${sign(e[1])}]` : ""), told, clear ? "clear" : "quiet"); }
     });
     const axis = word("tr", "", body, "axis"); word("th", "", axis);
@@ -60,8 +61,9 @@
     word("td", "", axis);
     const said = [];
     if (row.order.length) said.push("best first: " + row.order.map(([i, tie], k) => (k ? (tie ? " = " : " > ") : "") + name(i)).join(""));
+    if (row.unordered.length) said.push("not ordered, too few arrivals: " + row.unordered.map(name).join(", "));
     if (row.stable !== null && row.order.length) said.push(`order kept in ${Math.round(row.stable * 100)} % of resamples`);
-    if (row.best.length && row.stable !== null) said.push("best in " + row.best.map((b, i) => `${Math.round(b * 100)} % ${name(i)}`).join(", "));
+    if (row.best.length && row.stable !== null) said.push("best in " + row.order.map(([i]) => i).sort((a, b) => a - b).map((i) => `${Math.round(row.best[i] * 100)} % ${name(i)}`).join(", "));
     const lost = row.without.map((n, i) => n ? `${name(i)} has no value in ${n}` : "").filter(Boolean);
     if (row.runs < data.common) said.push(`over ${row.runs} of ${data.common} runs: ${lost.join(", ")}`);
     word("p", said.join(" · "), card, "quiet small");

@@ -16,7 +16,7 @@ use super::command::{Command, stage as stage_named};
 use super::keep::{Shown, kept};
 use super::log::{Log, MADE, MADE_AGAIN};
 use super::version::{Version, broken, lines, named};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// How a line is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub(super) trait Person {
     /// Lets the person edit a text in a file of this name; an error says why it was not possible.
     fn edit(&mut self, name: &str, text: &str) -> Result<String, String>;
     /// Keeps the log, so that whoever leaves can come back.
-    fn keep(&mut self, log: &Log) -> Result<(), Complaint>;
+    fn keep(&mut self, log: &Log) -> Result<(), Diagnostic>;
 }
 
 /// What a look is about.
@@ -104,7 +104,7 @@ pub(super) struct Decision {
 ///
 /// # Errors
 /// Only what [`Person::keep`] says.
-pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> Result<Option<Decision>, Complaint> {
+pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> Result<Option<Decision>, Diagnostic> {
     let how = if look.reasons.is_empty() { MADE } else { MADE_AGAIN };
     let edits = log.edits();
     let shown = if look.author == AuthorSpec::Offline { Shown::Nothing } else { Shown::Changes };

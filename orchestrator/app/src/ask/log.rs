@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::version::Version;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// How a version came about that an author made.
 pub(super) const MADE: &str = "made by the author";
@@ -95,24 +95,24 @@ impl Shelf {
     }
 
     /// The log, if one was kept.
-    pub(super) fn load(&self) -> Result<Log, Complaint> {
+    pub(super) fn load(&self) -> Result<Log, Diagnostic> {
         if !self.0.exists() {
             return Ok(Log::new());
         }
         let hint = "remove it to begin the looks anew; what the authors made is kept";
         let text = crate::files::text(&self.0, MOST_BYTES, hint)?;
         let log: Log = serde_json::from_str(&text)
-            .map_err(|why| Complaint::input(format!("`{}` holds no looks: {why}", self.0.display()), hint))?;
+            .map_err(|why| Diagnostic::input(format!("`{}` holds no looks: {why}", self.0.display()), hint))?;
         if log.format != FORMAT {
             let what = format!("`{}` has format {}, this version reads {FORMAT}", self.0.display(), log.format);
-            return Err(Complaint::input(what, hint));
+            return Err(Diagnostic::input(what, hint));
         }
         Ok(log)
     }
 
     /// Keeps the log; a crash leaves the old one or the new one.
-    pub(super) fn keep(&self, log: &Log) -> Result<(), Complaint> {
-        let cannot = |why: String| Complaint::input(format!("cannot write `{}`: {why}", self.0.display()), "");
+    pub(super) fn keep(&self, log: &Log) -> Result<(), Diagnostic> {
+        let cannot = |why: String| Diagnostic::input(format!("cannot write `{}`: {why}", self.0.display()), "");
         let text = serde_json::to_string(log).map_err(|why| cannot(why.to_string()))?;
         let beside = self.0.with_extension("new");
         std::fs::write(&beside, text)

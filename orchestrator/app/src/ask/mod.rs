@@ -37,7 +37,7 @@ use self::conversation::{About, Decision, Look, converse};
 use self::terminal::Terminal;
 use self::version::Version;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::prepare::Prepared;
 use crate::process::CODE_VERSION;
@@ -67,7 +67,7 @@ impl Asking {
         work: &Path,
         blobs: LocalBlobs,
         prepared: &Prepared,
-    ) -> Result<Self, Complaint> {
+    ) -> Result<Self, Diagnostic> {
         let mut terminal = Terminal::new(*talk, config, work);
         let mut log = terminal.log()?;
         let (looks, brought) = mpsc::sync_channel::<(Look, oneshot::Sender<Decision>)>(1);
@@ -89,7 +89,7 @@ impl Asking {
                         continue;
                     }
                     Ok(None) => String::new(),
-                    Err(complaint) => complaint.to_string(),
+                    Err(diagnostic) => diagnostic.to_string(),
                 };
                 leave.send_replace(Some(Left { look: look.about.number(), why }));
                 return;
@@ -121,20 +121,20 @@ impl Asking {
     }
 
     /// Ends when the person leaves, with what is said then.
-    pub(crate) async fn left(&mut self) -> Complaint {
+    pub(crate) async fn left(&mut self) -> Diagnostic {
         let left = match self.left.wait_for(Option::is_some).await {
             Ok(left) => left.clone(),
             Err(_) => None,
         };
         let Some(left) = left else { return std::future::pending().await };
         if left.why.is_empty() {
-            Complaint::input(
+            Diagnostic::input(
                 format!("left at look {}; nothing is lost", left.look),
                 "the same command comes back to it",
             )
             .with_code(Code::Waits)
         } else {
-            Complaint::input(left.why, "").with_code(Code::Ours)
+            Diagnostic::input(left.why, "").with_code(Code::Ours)
         }
     }
 

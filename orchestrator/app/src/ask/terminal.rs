@@ -9,7 +9,7 @@ use super::conversation::{Look, Person, Tone};
 use super::log::{Log, Shelf};
 use super::version::Version;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// Width of a picture in the terminal, columns.
@@ -56,7 +56,7 @@ impl Terminal {
     }
 
     /// The log of an earlier visit, or a new one.
-    pub(super) fn log(&self) -> Result<Log, Complaint> {
+    pub(super) fn log(&self) -> Result<Log, Diagnostic> {
         self.shelf.load()
     }
 }
@@ -175,7 +175,7 @@ impl Person for Terminal {
         crate::files::text(&file, MOST_BYTES, "nothing was changed").map_err(|why| why.to_string())
     }
 
-    fn keep(&mut self, log: &Log) -> Result<(), Complaint> {
+    fn keep(&mut self, log: &Log) -> Result<(), Diagnostic> {
         self.shelf.keep(log)
     }
 }

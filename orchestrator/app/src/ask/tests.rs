@@ -12,7 +12,7 @@ use super::conversation::{About, Decision, Look, Person, Tone, converse};
 use super::log::{Log, Shelf};
 use super::version::Version;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::prepare::prepare_text;
 use crate::run_options::RunOptions;
 
@@ -68,7 +68,7 @@ impl Person for Script {
     fn edit(&mut self, _: &str, text: &str) -> Result<String, String> {
         self.editor.as_mut().map_or_else(|| Err("no editor".to_owned()), |edit| edit(text))
     }
-    fn keep(&mut self, _: &Log) -> Result<(), Complaint> {
+    fn keep(&mut self, _: &Log) -> Result<(), Diagnostic> {
         self.kept += 1;
         Ok(())
     }

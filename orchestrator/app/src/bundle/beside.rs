@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::files::{PACKED, pack, packed_at};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::layout;
 
 /// Folder of the work folder in which bundles are written.
@@ -15,7 +15,7 @@ pub(super) struct Beside(pub(super) PathBuf);
 
 impl Beside {
     /// An empty folder for the bundle of this name. What an earlier process left in it goes.
-    pub(super) fn new(work: &Path, name: &str) -> Result<Self, Complaint> {
+    pub(super) fn new(work: &Path, name: &str) -> Result<Self, Diagnostic> {
         let folder = work.join(WRITING).join(name);
         let cannot = |why: std::io::Error| cannot(&folder, &why);
         match std::fs::remove_dir_all(&folder) {
@@ -29,7 +29,7 @@ impl Beside {
 
     /// Moves the folder to where it belongs, by one rename. Where a folder is there already, such as the one that holds the work
     /// folder of a single scenario, its entries are moved one by one, and the one that finishes a bundle last.
-    pub(super) fn appear(&self, dir: &Path) -> Result<(), Complaint> {
+    pub(super) fn appear(&self, dir: &Path) -> Result<(), Diagnostic> {
         let cannot = |why: std::io::Error| cannot(dir, &why);
         if !dir.exists() {
             if let Some(parent) = dir.parent() {
@@ -51,7 +51,7 @@ impl Beside {
 
 impl Beside {
     /// Packs the folder into an archive beside where it would belong, by one rename.
-    pub(super) fn appear_packed(&self, dir: &Path) -> Result<(), Complaint> {
+    pub(super) fn appear_packed(&self, dir: &Path) -> Result<(), Diagnostic> {
         let name = dir.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let file = self.0.with_file_name(format!("{name}{PACKED}"));
         let cannot = |why: std::io::Error| cannot(&file, &why);
@@ -73,8 +73,8 @@ impl Drop for Beside {
     }
 }
 
-fn cannot(path: &Path, why: &std::io::Error) -> Complaint {
-    Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+fn cannot(path: &Path, why: &std::io::Error) -> Diagnostic {
+    Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
 }
 
 #[cfg(test)]

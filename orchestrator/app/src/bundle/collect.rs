@@ -7,7 +7,7 @@ use socrates_model::wire::{JobStatus, ScenarioStatus};
 use socrates_model::{Behaviors, JobState, Paths, Proposal, Reading, Recording, Report, Role, Run};
 
 use super::{FailedRun, Fetch, Past, missing, ours};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::prepare::Prepared;
 
 /// A run with what was found of it.
@@ -35,12 +35,12 @@ pub(super) struct Made {
 }
 
 /// Reads every artifact that the bundle is made of.
-pub(super) fn made(prepared: &Prepared, past: &Past<'_>) -> Result<Made, Complaint> {
+pub(super) fn made(prepared: &Prepared, past: &Past<'_>) -> Result<Made, Diagnostic> {
     let Past { status, fetch, .. } = *past;
     let lead = scoring_jobs(status).into_iter().next();
     // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
     let judged = lead.and_then(|lead| past.jobs.iter().find(|job| job.key == lead.key));
-    let text = |role: Role, stage: Stage| -> Result<String, Complaint> {
+    let text = |role: Role, stage: Stage| -> Result<String, Diagnostic> {
         if let Some(digest) = judged.and_then(|job| job.inputs.get(&role)) {
             return utf8(role, fetch(digest)?);
         }
@@ -79,7 +79,7 @@ fn failed(status: &ScenarioStatus) -> Vec<FailedRun> {
 }
 
 /// Every run that was judged.
-fn runs(status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Vec<MadeRun>, Complaint> {
+fn runs(status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Vec<MadeRun>, Diagnostic> {
     let mut runs = Vec::new();
     for job in scoring_jobs(status) {
         let simulation = newest(status, Stage::Simulation, &job.key.item);
@@ -99,19 +99,19 @@ fn runs(status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Vec<MadeRun>, Comp
     Ok(runs)
 }
 
-fn parse<T: serde::de::DeserializeOwned>(role: Role, text: &str) -> Result<T, Complaint> {
+fn parse<T: serde::de::DeserializeOwned>(role: Role, text: &str) -> Result<T, Diagnostic> {
     serde_json::from_str(text).map_err(|why| ours(&format!("the {role} cannot be decoded: {why}")))
 }
 
 /// An artifact as text.
-pub(super) fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
+pub(super) fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Diagnostic> {
     if let Some(text) = &artifact.inline {
         return Ok(text.clone());
     }
     utf8(artifact.role, fetch(&artifact.digest)?)
 }
 
-fn utf8(role: Role, bytes: Vec<u8>) -> Result<String, Complaint> {
+fn utf8(role: Role, bytes: Vec<u8>) -> Result<String, Diagnostic> {
     String::from_utf8(bytes).map_err(|why| ours(&format!("the {role} is no text: {why}")))
 }
 

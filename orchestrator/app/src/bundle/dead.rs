@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::beside::Beside;
 use super::{Past, Writer, pretty, provenance, put_request};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files::shell;
 use crate::layout;
 use crate::prepare::Prepared;
@@ -25,8 +25,8 @@ pub(crate) fn write(
     prepared: &Prepared,
     seed: u64,
     past: &Past<'_>,
-    why: &Complaint,
-) -> Result<(), Complaint> {
+    why: &Diagnostic,
+) -> Result<(), Diagnostic> {
     let name = past.status.id.as_str();
     let folder = library.join(FOLDER).join(name);
     let beside = Beside::new(past.work, &format!("{FOLDER}-{name}"))?;
@@ -37,13 +37,13 @@ pub(crate) fn write(
     // One of an earlier time goes: it is the same scenario.
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(|why| {
-            Complaint::input(format!("cannot write `{}`: {why}", folder.display()), "--out chooses another folder")
+            Diagnostic::input(format!("cannot write `{}`: {why}", folder.display()), "--out chooses another folder")
         })?;
     }
     beside.appear(&folder)
 }
 
-fn told(folder: &Path, prepared: &Prepared, seed: u64, why: &Complaint) -> String {
+fn told(folder: &Path, prepared: &Prepared, seed: u64, why: &Diagnostic) -> String {
     let rates: Vec<String> = prepared
         .injected
         .iter()

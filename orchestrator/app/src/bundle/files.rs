@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::io::{Read as _, Write as _};
 use std::path::{Component, Path, PathBuf};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::layout;
 
 /// How the name of an archive ends.
@@ -52,7 +52,7 @@ pub(crate) enum Files {
 
 impl Files {
     /// Those of the bundle at a path, whichever form it has. A folder is not looked into, an archive is unpacked.
-    pub(crate) fn at(bundle: &Path) -> Result<Self, Complaint> {
+    pub(crate) fn at(bundle: &Path) -> Result<Self, Diagnostic> {
         match archive(bundle) {
             None => Ok(Self::Folder(bundle.to_path_buf())),
             Some(file) => {
@@ -63,7 +63,7 @@ impl Files {
     }
 
     /// Those of which the manifest alone is wanted.
-    pub(crate) fn manifest_at(bundle: &Path) -> Result<Self, Complaint> {
+    pub(crate) fn manifest_at(bundle: &Path) -> Result<Self, Diagnostic> {
         match archive(bundle) {
             None => Ok(Self::Folder(bundle.to_path_buf())),
             Some(file) => {
@@ -104,8 +104,8 @@ impl Files {
 }
 
 /// The first files of an archive, until one of which no further are wanted.
-fn unpacked(file: &Path, further: impl Fn(&str) -> bool) -> Result<BTreeMap<String, Vec<u8>>, Complaint> {
-    let bad = |why: String| Complaint::input(format!("`{}` is no packed bundle: {why}", file.display()), HINT);
+fn unpacked(file: &Path, further: impl Fn(&str) -> bool) -> Result<BTreeMap<String, Vec<u8>>, Diagnostic> {
+    let bad = |why: String| Diagnostic::input(format!("`{}` is no packed bundle: {why}", file.display()), HINT);
     let opened = std::fs::File::open(file).map_err(|why| bad(why.to_string()))?;
     let plain = zstd::Decoder::new(opened).map_err(|why| bad(why.to_string()))?;
     let mut archive = tar::Archive::new(plain.take(MOST_BYTES));
@@ -188,11 +188,14 @@ fn walk(folder: &Path, before: &str, names: &mut Vec<String>) -> std::io::Result
 ///
 /// # Errors
 /// An archive that cannot be read, or a folder that cannot be written.
-pub(crate) fn unpack_beside(archive: &Path) -> Result<PathBuf, Complaint> {
+pub(crate) fn unpack_beside(archive: &Path) -> Result<PathBuf, Diagnostic> {
     let name = archive.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = archive.with_file_name(name.strip_suffix(PACKED).unwrap_or(&name));
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write `{}`: {why}", folder.display()), "move the archive to a folder of yours")
+        Diagnostic::input(
+            format!("cannot write `{}`: {why}", folder.display()),
+            "move the archive to a folder of yours",
+        )
     };
     for (name, bytes) in unpacked(archive, |_| true)? {
         let path = folder.join(&name);

@@ -11,7 +11,7 @@ use socrates_model::{
 
 use super::files::{Files, archive};
 use super::{Bundle, Manifest, RunEntry};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::layout::{self, LOCATION, Sheet};
 
 /// A file of a bundle that says of which format it is.
@@ -49,17 +49,17 @@ pub(crate) fn is_bundle(dir: &Path) -> bool {
 ///
 /// # Errors
 /// Where it is not there, or cannot be read.
-pub(crate) fn file(dir: &Path, name: &str) -> Result<Vec<u8>, Complaint> {
+pub(crate) fn file(dir: &Path, name: &str) -> Result<Vec<u8>, Diagnostic> {
     bytes(&Files::at(dir)?, name)
 }
 
 /// Reads a finished bundle back, here or wherever it was moved to.
-pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
+pub fn read(dir: &Path) -> Result<Bundle, Diagnostic> {
     read_some(dir, |_, _| true)
 }
 
 /// The same with some of its runs only, chosen by their place in the manifest and what it says of them.
-pub(crate) fn read_some(dir: &Path, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Complaint> {
+pub(crate) fn read_some(dir: &Path, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Diagnostic> {
     read_files(dir, &Files::at(dir)?, wanted)
 }
 
@@ -67,14 +67,14 @@ pub(crate) fn read_some(dir: &Path, wanted: impl Fn(usize, &RunEntry) -> bool) -
 pub(crate) fn read_with_reports(
     dir: &Path,
     wanted: impl Fn(usize, &RunEntry) -> bool,
-) -> Result<(Bundle, Vec<Report>), Complaint> {
+) -> Result<(Bundle, Vec<Report>), Diagnostic> {
     let files = Files::at(dir)?;
     let bundle = read_files(dir, &files, wanted)?;
     let reports = reports_of(&files, &bundle.manifest)?;
     Ok((bundle, reports))
 }
 
-fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Complaint> {
+fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Diagnostic> {
     let manifest = finished(files)?;
     let request = request(files)?;
     let location: Location = part(files, &LOCATION, &"")?;
@@ -86,7 +86,7 @@ fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bo
     for (_, entry) in manifest.runs.iter().enumerate().filter(|(index, entry)| wanted(*index, entry)) {
         let name = layout::RECORDINGS.of(&entry.run());
         let recording = socrates_stream::mcap::read(&bytes(files, &name)?)
-            .map_err(|why| Complaint::input(format!("`{}`: {why}", files.shown(&name)), HINT))?;
+            .map_err(|why| Diagnostic::input(format!("`{}`: {why}", files.shown(&name)), HINT))?;
         runs.push((recording, report(files, entry)?));
     }
     Ok(Bundle {
@@ -103,16 +103,16 @@ fn read_files(dir: &Path, files: &Files, wanted: impl Fn(usize, &RunEntry) -> bo
 }
 
 /// The reports of all runs of a bundle, without their recordings.
-pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
+pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Diagnostic> {
     reports_of(&Files::at(dir)?, manifest)
 }
 
-fn reports_of(files: &Files, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
+fn reports_of(files: &Files, manifest: &Manifest) -> Result<Vec<Report>, Diagnostic> {
     manifest.runs.iter().map(|entry| report(files, entry)).collect()
 }
 
 /// Files of a bundle that are not as they were written, in order of their names; the page may be written anew.
-pub(crate) fn changed(bundle: &Bundle) -> Vec<String> {
+pub fn changed(bundle: &Bundle) -> Vec<String> {
     // Of an archive that can no longer be read everything has changed.
     let there = Files::at(&bundle.dir).ok();
     let same = |name: &str, digest: &Digest| {
@@ -124,10 +124,10 @@ pub(crate) fn changed(bundle: &Bundle) -> Vec<String> {
 }
 
 /// The manifest, or why this is no bundle.
-pub(super) fn finished(files: &Files) -> Result<Manifest, Complaint> {
+pub(super) fn finished(files: &Files) -> Result<Manifest, Diagnostic> {
     let name = layout::MANIFEST.path;
     if files.read(name).is_err_and(|why| why.kind() == std::io::ErrorKind::NotFound) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` is no finished bundle: `{name}` is missing", files.whole()),
             "`socrates run` makes one; the same command again finishes an unfinished one",
         ));
@@ -138,42 +138,42 @@ pub(super) fn finished(files: &Files) -> Result<Manifest, Complaint> {
     Ok(manifest)
 }
 
-fn request(files: &Files) -> Result<Request, Complaint> {
+fn request(files: &Files) -> Result<Request, Diagnostic> {
     let name = layout::REQUEST.path;
     let text = text(files, name)?;
     // Planners may have gone since; what a run needs of them is looked at when it is run again.
     Request::of_toml(&text, None).map_err(|problems| {
-        let mut complaint = Complaint::input(format!("`{}` cannot be used", files.shown(name)), HINT);
-        complaint.causes = problems.iter().map(|bad| bad.told(layout::REQUEST.path)).collect();
-        complaint
+        let mut diagnostic = Diagnostic::input(format!("`{}` cannot be used", files.shown(name)), HINT);
+        diagnostic.causes = problems.iter().map(|bad| bad.told(layout::REQUEST.path)).collect();
+        diagnostic
     })
 }
 
 /// The commands of a driver outside in a run of a bundle.
-pub(crate) fn commands(dir: &Path, run: &Run) -> Result<Commands, Complaint> {
+pub(crate) fn commands(dir: &Path, run: &Run) -> Result<Commands, Diagnostic> {
     part(&Files::at(dir)?, &layout::COMMANDS, run)
 }
 
-fn report(files: &Files, entry: &RunEntry) -> Result<Report, Complaint> {
+fn report(files: &Files, entry: &RunEntry) -> Result<Report, Diagnostic> {
     part(files, &layout::REPORTS, &entry.run())
 }
 
 /// A part of the bundle: the one of this name, or the only one of its kind.
-fn part<T: DeserializeOwned + Versioned>(files: &Files, sheet: &Sheet, name: &dyn Display) -> Result<T, Complaint> {
+fn part<T: DeserializeOwned + Versioned>(files: &Files, sheet: &Sheet, name: &dyn Display) -> Result<T, Diagnostic> {
     json(files, &sheet.of(name))
 }
 
-fn bytes(files: &Files, name: &str) -> Result<Vec<u8>, Complaint> {
-    files.read(name).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", files.shown(name)), HINT))
+fn bytes(files: &Files, name: &str) -> Result<Vec<u8>, Diagnostic> {
+    files.read(name).map_err(|why| Diagnostic::input(format!("cannot read `{}`: {why}", files.shown(name)), HINT))
 }
 
-fn text(files: &Files, name: &str) -> Result<String, Complaint> {
+fn text(files: &Files, name: &str) -> Result<String, Diagnostic> {
     String::from_utf8(bytes(files, name)?)
-        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", files.shown(name)), HINT))
+        .map_err(|why| Diagnostic::input(format!("cannot read `{}`: {why}", files.shown(name)), HINT))
 }
 
 /// A JSON file of the format that this program reads, decoded; an error has the file, the key and, in the decoder's own words, the line.
-fn json<T: DeserializeOwned + Versioned>(files: &Files, name: &str) -> Result<T, Complaint> {
+fn json<T: DeserializeOwned + Versioned>(files: &Files, name: &str) -> Result<T, Diagnostic> {
     let text = text(files, name)?;
     let mut from = serde_json::Deserializer::from_str(&text);
     let value: T = serde_path_to_error::deserialize(&mut from)
@@ -186,13 +186,13 @@ fn json<T: DeserializeOwned + Versioned>(files: &Files, name: &str) -> Result<T,
     Ok(value)
 }
 
-fn wrong(files: &Files, name: &str, key: &str, why: &str) -> Complaint {
+fn wrong(files: &Files, name: &str, key: &str, why: &str) -> Diagnostic {
     // `.` is the path of the whole file, and `.?` a place within a key that has no name yet.
     let key = key.trim_end_matches(".?");
     let at = if matches!(key, "." | "?") { String::new() } else { format!("`{key}`: ") };
-    Complaint::input(format!("`{}`: {at}{why}", files.shown(name)), HINT)
+    Diagnostic::input(format!("`{}`: {at}{why}", files.shown(name)), HINT)
 }
 
-fn unusable(files: &Files, name: &str, faults: &[Fault]) -> Complaint {
-    Complaint::faults(format!("`{}` is not usable", files.shown(name)), faults, HINT)
+fn unusable(files: &Files, name: &str, faults: &[Fault]) -> Diagnostic {
+    Diagnostic::faults(format!("`{}` is not usable", files.shown(name)), faults, HINT)
 }

@@ -7,7 +7,7 @@ use socrates_model::Digest;
 use super::beside::Beside;
 use super::files::{Files, PACKED, archive, packed_at};
 use super::read::finished;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Folders within a bundle, at most.
 const DEPTH: usize = 8;
@@ -15,7 +15,7 @@ const DEPTH: usize = 8;
 const NAMED: usize = 3;
 
 /// Files of a finished bundle that are gone or not as they were written, in order of their names.
-pub(crate) fn damaged(dir: &Path) -> Result<Vec<String>, Complaint> {
+pub(crate) fn damaged(dir: &Path) -> Result<Vec<String>, Diagnostic> {
     let files = Files::at(dir)?;
     let manifest = finished(&files)?;
     let same = |(name, digest): &(&String, &Digest)| files.read(name).is_ok_and(|bytes| Digest::of(&bytes) == **digest);
@@ -23,14 +23,14 @@ pub(crate) fn damaged(dir: &Path) -> Result<Vec<String>, Complaint> {
 }
 
 /// Says which files of a bundle are damaged, if any are.
-pub(crate) fn whole(dir: &Path) -> Result<(), Complaint> {
+pub(crate) fn whole(dir: &Path) -> Result<(), Diagnostic> {
     let damaged = damaged(dir)?;
     if damaged.is_empty() {
         return Ok(());
     }
     let named: Vec<String> = damaged.iter().take(NAMED).map(|name| format!("`{name}`")).collect();
     let more = if damaged.len() > NAMED { format!(" and {} more", damaged.len() - NAMED) } else { String::new() };
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         format!("the bundle `{}` is damaged: {}{more} not as written", dir.display(), named.join(", ")),
         "remove it and run the command that made it again",
     ))
@@ -38,10 +38,10 @@ pub(crate) fn whole(dir: &Path) -> Result<(), Complaint> {
 
 /// Copies a bundle in the form that it has, checked on both sides. `to`: the folder that it is called like; `work`: the work folder of
 /// the library, on the same file system.
-pub(crate) fn copy(from: &Path, to: &Path, work: &Path) -> Result<(), Complaint> {
+pub(crate) fn copy(from: &Path, to: &Path, work: &Path) -> Result<(), Diagnostic> {
     let name = to.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
+        Diagnostic::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
     };
     whole(from)?;
     let beside = Beside::new(work, &name)?;
@@ -65,14 +65,14 @@ pub(crate) fn moved(from: &Path, to: &Path) -> bool {
 }
 
 /// Copies what is left of a scenario that could not be made; none where nothing is. `from`, `to`: its folders in the shard and in the library.
-pub(crate) fn copy_dead(from: &Path, to: &Path, work: &Path) -> Result<(), Complaint> {
+pub(crate) fn copy_dead(from: &Path, to: &Path, work: &Path) -> Result<(), Diagnostic> {
     if !from.is_dir() || to.exists() {
         return Ok(());
     }
     let name = to.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let beside = Beside::new(work, &format!("dead-{name}"))?;
     tree(from, &beside.0, DEPTH).map_err(|why| {
-        Complaint::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
+        Diagnostic::input(format!("cannot copy `{}`: {why}", from.display()), "--out chooses another folder")
     })?;
     beside.appear(to)
 }

@@ -7,7 +7,7 @@ use socrates_model::{PlannerName, Report, Run};
 use socrates_scoring::compare::Entry;
 
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::{batch, library_index};
 
 /// One scenario with all its runs.
@@ -25,7 +25,7 @@ pub(super) struct Scenario {
 }
 
 impl Scenario {
-    fn read(dir: &Path, name: String) -> Result<Self, Complaint> {
+    fn read(dir: &Path, name: String) -> Result<Self, Diagnostic> {
         let (bundle, reports) = bundle::read_with_reports(dir, |_, _| false)?;
         Ok(Self {
             name,
@@ -65,7 +65,7 @@ pub(super) struct Found {
 }
 
 /// Reads bundles and folders of bundles.
-pub(super) fn read(roots: &[PathBuf]) -> Result<Found, Complaint> {
+pub(super) fn read(roots: &[PathBuf]) -> Result<Found, Diagnostic> {
     let mut found = Found { scenarios: Vec::new(), left_out: Vec::new() };
     for root in roots {
         if bundle::is_bundle(root) {
@@ -85,18 +85,18 @@ pub(super) fn read(roots: &[PathBuf]) -> Result<Found, Complaint> {
     }
     if found.scenarios.is_empty() {
         let all: Vec<String> = roots.iter().map(|root| format!("`{}`", root.display())).collect();
-        let mut complaint = Complaint::input(
+        let mut diagnostic = Diagnostic::input(
             format!("there is no scenario to compare in {}", all.join(", ")),
             "name bundles or folders of bundles, or requests to run",
         );
-        complaint.causes = found.left_out.iter().map(|(name, why)| format!("{name}: {why}")).collect();
-        return Err(complaint);
+        diagnostic.causes = found.left_out.iter().map(|(name, why)| format!("{name}: {why}")).collect();
+        return Err(diagnostic);
     }
     Ok(found)
 }
 
 /// The bundles of a folder: those that its library lists first, in their order.
-fn folder(root: &Path, found: &mut Found) -> Result<(), Complaint> {
+fn folder(root: &Path, found: &mut Found) -> Result<(), Diagnostic> {
     let there = batch::bundles(root)?;
     let mut names: Vec<String> = Vec::new();
     let mut listed = BTreeSet::new();

@@ -8,7 +8,7 @@ use socrates_scoring::compare::{Cause, Comparison, Outcome, Row};
 
 use super::found::{Found, Scenario};
 use crate::bundle::{self, Bundle};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::opaque;
 use crate::output::Printer;
@@ -38,7 +38,7 @@ pub(super) fn write(
     found: &Found,
     comparison: &Comparison,
     rows: &Rows,
-) -> Result<usize, Complaint> {
+) -> Result<usize, Diagnostic> {
     let mut page = ComparePage::default();
     let mut wanted: Vec<(usize, u64, &Scenario)> = Vec::new();
     for scenario in &found.scenarios {
@@ -82,7 +82,7 @@ fn add(
     scenario: &Scenario,
     seed: u64,
     planners: &[PlannerName],
-) -> Result<bool, Complaint> {
+) -> Result<bool, Diagnostic> {
     let shown = |run: &Run| run.seed == seed && planners.contains(&run.planner);
     let bundle: Bundle = bundle::read_some(&scenario.dir, |_, entry| shown(&entry.run()))?;
     let read: Vec<Run> = bundle.manifest.runs.iter().map(bundle::RunEntry::run).filter(shown).collect();
@@ -175,6 +175,11 @@ fn metric_row(row: &Row) -> MetricRow {
             .map_or_else(Vec::new, |order| order.places.iter().copied().zip(order.ties.iter().copied()).collect()),
         stable: order.and_then(|order| order.stable),
         best: order.map_or_else(Vec::new, |order| order.best.clone()),
+        marked: row.best(),
+        decimals: row.decimals(),
+        unordered: order.map_or_else(Vec::new, |order| {
+            (0..row.means.len()).filter(|place| !order.places.contains(place)).collect()
+        }),
     }
 }
 

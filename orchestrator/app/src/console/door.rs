@@ -12,7 +12,7 @@ use axum::routing::{get, post};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use socrates_gateway::guard::Rules;
-use socrates_llm::{Misfit, misfits};
+use socrates_prompts::{Misfit, misfits};
 use tokio::time::Instant;
 
 use super::desk::{Desk, DeskError, Said};

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use serde_json::json;
 use tokio::time::Instant;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::loopback::Loopback;
 use crate::output::Printer;
 use crate::process::leave;
@@ -42,8 +42,8 @@ pub struct ConsoleOptions {
 /// Serves the page until it is told to leave.
 ///
 /// # Errors
-/// A [`Complaint`] where the port is taken, or no token can be drawn.
-pub async fn console(talk: &Printer, options: &ConsoleOptions) -> Result<(), Complaint> {
+/// A [`Diagnostic`] where the port is taken, or no token can be drawn.
+pub async fn console(talk: &Printer, options: &ConsoleOptions) -> Result<(), Diagnostic> {
     let loopback = Loopback::bind(options.port).await?;
     let (page, base, token) = (loopback.page(), format!("http://{}/v1", loopback.address), &loopback.token);
     let run = |author: &str| {

@@ -8,7 +8,7 @@ use socrates_model::{Fault, Location, PlaceClass};
 
 use super::journal::{Journal, Opened};
 use super::site::{Disk, Site, WORK, differing};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::words::plural;
 
 /// Why something is not done.
@@ -25,7 +25,7 @@ pub(super) enum Refusal {
     /// These files were changed by another program.
     Changed(Vec<String>),
     /// The disk, or the map.
-    Outside(Complaint),
+    Outside(Diagnostic),
 }
 
 impl From<EditError> for Refusal {
@@ -34,8 +34,8 @@ impl From<EditError> for Refusal {
     }
 }
 
-impl From<Complaint> for Refusal {
-    fn from(why: Complaint) -> Self {
+impl From<Diagnostic> for Refusal {
+    fn from(why: Diagnostic) -> Self {
         Self::Outside(why)
     }
 }
@@ -59,8 +59,8 @@ impl Board {
     /// Lays out a location: what its files hold, with what a journal says was done since. Gives the map besides.
     ///
     /// # Errors
-    /// A [`Complaint`] where files or journal cannot be read.
-    pub(super) fn lay(site: Site, read_only: bool) -> Result<(Self, Location), Complaint> {
+    /// A [`Diagnostic`] where files or journal cannot be read.
+    pub(super) fn lay(site: Site, read_only: bool) -> Result<(Self, Location), Diagnostic> {
         let draft = site.draft()?;
         let (base, disk) = (Sketch::of(&draft.location), site.disk.clone());
         let mut notes: Vec<String> = draft.location.warnings.clone();
@@ -178,7 +178,7 @@ impl Board {
         Ok(self.state(&format!("did again: {said}")))
     }
 
-    fn keep(&mut self, step: Step) -> Result<(), Complaint> {
+    fn keep(&mut self, step: Step) -> Result<(), Diagnostic> {
         self.journal.as_mut().map_or(Ok(()), |journal| journal.step(step))
     }
 

@@ -15,7 +15,7 @@ use socrates_edit::{History, Sketch, Step};
 use socrates_model::Digest;
 
 use super::site::Disk;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 
 /// Name of the file in the editor's own folder.
 pub(crate) const JOURNAL: &str = "journal.jsonl";
@@ -57,9 +57,9 @@ impl Journal {
     /// Goes on with the journal of a folder, or begins one with a sketch that was read from files.
     ///
     /// # Errors
-    /// A [`Complaint`] where it cannot be written, was drawn on another map, or holds a line that cannot be done; the last line is left out
+    /// A [`Diagnostic`] where it cannot be written, was drawn on another map, or holds a line that cannot be done; the last line is left out
     /// where it was cut off.
-    pub(crate) fn open(work: &Path, map: Digest, base: Sketch, disk: Disk) -> Result<Opened, Complaint> {
+    pub(crate) fn open(work: &Path, map: Digest, base: Sketch, disk: Disk) -> Result<Opened, Diagnostic> {
         let path = work.join(JOURNAL);
         let cannot = |why: std::io::Error| cannot(&path, why);
         std::fs::create_dir_all(work).map_err(cannot)?;
@@ -67,7 +67,7 @@ impl Journal {
             File::options().create(true).truncate(false).read(true).write(true).open(&path).map_err(cannot)?;
         if file.metadata().map_err(cannot)?.len() > MAX_BYTES {
             let what = format!("the journal `{}` has more than {MAX_BYTES} bytes", path.display());
-            return Err(Complaint::input(what, AFRESH));
+            return Err(Diagnostic::input(what, AFRESH));
         }
         let mut text = String::new();
         file.read_to_string(&mut text).map_err(cannot)?;
@@ -87,8 +87,8 @@ impl Journal {
     /// Moves the journal of a folder aside, where there is one. Gives where it is then.
     ///
     /// # Errors
-    /// A [`Complaint`] where it cannot be moved.
-    pub(crate) fn put_aside(work: &Path) -> Result<Option<PathBuf>, Complaint> {
+    /// A [`Diagnostic`] where it cannot be moved.
+    pub(crate) fn put_aside(work: &Path) -> Result<Option<PathBuf>, Diagnostic> {
         let path = work.join(JOURNAL);
         if !path.exists() {
             return Ok(None);
@@ -102,8 +102,8 @@ impl Journal {
     /// Keeps something that was done.
     ///
     /// # Errors
-    /// A [`Complaint`] where the disk does not take it.
-    pub(crate) fn step(&mut self, step: Step) -> Result<(), Complaint> {
+    /// A [`Diagnostic`] where the disk does not take it.
+    pub(crate) fn step(&mut self, step: Step) -> Result<(), Diagnostic> {
         self.write(&Line::Step(step))
     }
 
@@ -111,13 +111,13 @@ impl Journal {
     ///
     /// # Errors
     /// As [`Journal::step`].
-    pub(crate) fn saved(&mut self, disk: &Disk) -> Result<(), Complaint> {
+    pub(crate) fn saved(&mut self, disk: &Disk) -> Result<(), Diagnostic> {
         self.write(&Line::Saved { disk: disk.clone() })
     }
 
-    fn write(&mut self, line: &Line) -> Result<(), Complaint> {
+    fn write(&mut self, line: &Line) -> Result<(), Diagnostic> {
         let mut text = serde_json::to_string(line).map_err(|why| {
-            Complaint::input(format!("a line of the journal cannot be written: {why}"), "").with_code(Code::Ours)
+            Diagnostic::input(format!("a line of the journal cannot be written: {why}"), "").with_code(Code::Ours)
         })?;
         text.push('\n');
         let begins = self.file.stream_position();
@@ -135,15 +135,15 @@ impl Journal {
 /// What helps where a journal is of no use.
 const AFRESH: &str = "`--fresh` moves it aside and begins with the files as they are";
 
-fn cannot(path: &Path, why: std::io::Error) -> Complaint {
+fn cannot(path: &Path, why: std::io::Error) -> Diagnostic {
     let hint = "check the disk and the folder; `--read-only` looks at the location and keeps nothing";
-    Complaint::input(format!("cannot keep `{}`: {why}", path.display()), hint).with_code(Code::Ours)
+    Diagnostic::input(format!("cannot keep `{}`: {why}", path.display()), hint).with_code(Code::Ours)
 }
 
 /// Does again what the lines say.
-fn replayed(path: &Path, lines: &str, map: Digest) -> Result<(History, Disk, usize), Complaint> {
+fn replayed(path: &Path, lines: &str, map: Digest) -> Result<(History, Disk, usize), Diagnostic> {
     let wrong = |number: usize, why: String| {
-        Complaint::input(format!("`{}:{}` cannot be done again: {why}", path.display(), number + 1), AFRESH)
+        Diagnostic::input(format!("`{}:{}` cannot be done again: {why}", path.display(), number + 1), AFRESH)
     };
     let mut all = lines.lines().enumerate();
     let first = all.next().map(|(_, line)| serde_json::from_str::<Line>(line));
@@ -151,7 +151,7 @@ fn replayed(path: &Path, lines: &str, map: Digest) -> Result<(History, Disk, usi
         Some(Ok(Line::Begun { format: FORMAT, map: drawn_on, disk, sketch })) => {
             if drawn_on != map {
                 let what = format!("the journal `{}` was drawn on another map than this one", path.display());
-                return Err(Complaint::input(what, AFRESH));
+                return Err(Diagnostic::input(what, AFRESH));
             }
             (History::new(sketch), disk)
         }

@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex};
 
 use serde_json::json;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::folder::{Hold, HoldFor};
 use crate::loopback::Loopback;
 use crate::output::Printer;
@@ -63,8 +63,8 @@ pub struct EditOptions {
 /// Serves the page until it is told to leave.
 ///
 /// # Errors
-/// A [`Complaint`] where there is no map, files or journal cannot be read, or somebody else edits the folder.
-pub async fn edit(talk: &Printer, options: &EditOptions) -> Result<(), Complaint> {
+/// A [`Diagnostic`] where there is no map, files or journal cannot be read, or somebody else edits the folder.
+pub async fn edit(talk: &Printer, options: &EditOptions) -> Result<(), Diagnostic> {
     let site = Site::of(&options.location, options.out.as_deref())?;
     let folder = site.folder.clone();
     let work = folder.join(WORK);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use socrates_maps::{Draft, EXTRA, GRAPH, MAP};
 use socrates_model::{Digest, Fault};
 
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::raw_map;
 
 /// Folder, inside that of the location, which only the editor needs.
@@ -45,8 +45,8 @@ impl Site {
     /// another; of the others a copy is edited, by default `<name>-edited`.
     ///
     /// # Errors
-    /// A [`Complaint`] where there is no map, or the folder of the copy holds another one.
-    pub(crate) fn of(given: &str, out: Option<&Path>) -> Result<Self, Complaint> {
+    /// A [`Diagnostic`] where there is no map, or the folder of the copy holds another one.
+    pub(crate) fn of(given: &str, out: Option<&Path>) -> Result<Self, Diagnostic> {
         let path = Path::new(given);
         let (files, at, name) = match socrates_maps::shipped::files(given) {
             Some(files) => (files, None, given.to_owned()),
@@ -84,8 +84,8 @@ impl Site {
     /// What the files hold.
     ///
     /// # Errors
-    /// A [`Complaint`] with every fault, where a file cannot be read at all.
-    pub(crate) fn draft(&self) -> Result<Draft, Complaint> {
+    /// A [`Diagnostic`] with every fault, where a file cannot be read at all.
+    pub(crate) fn draft(&self) -> Result<Draft, Diagnostic> {
         let mut files = self.map.clone();
         files.extend(self.drawn.clone());
         socrates_maps::draft(&files, &self.name).map_err(|faults| self.unusable(&faults))
@@ -95,7 +95,7 @@ impl Site {
     ///
     /// # Errors
     /// As [`Site::draft`].
-    pub(crate) fn again(&self) -> Result<(Draft, Disk), Complaint> {
+    pub(crate) fn again(&self) -> Result<(Draft, Disk), Diagnostic> {
         let drawn = drawn_in(&self.folder)?;
         let disk = digests(&drawn);
         let now = Self { drawn, ..self.clone() };
@@ -117,24 +117,24 @@ impl Site {
     /// The digests of the drawn files on the disk now.
     ///
     /// # Errors
-    /// A [`Complaint`] where one of them is there and cannot be read.
-    pub(crate) fn disk_now(&self) -> Result<Disk, Complaint> {
+    /// A [`Diagnostic`] where one of them is there and cannot be read.
+    pub(crate) fn disk_now(&self) -> Result<Disk, Diagnostic> {
         drawn_in(&self.folder).map(|drawn| digests(&drawn))
     }
 
     /// Says so where the map in the folder is no longer the one on which is drawn.
     ///
     /// # Errors
-    /// A [`Complaint`] that names the file.
-    pub(crate) fn check_map(&self) -> Result<(), Complaint> {
+    /// A [`Diagnostic`] that names the file.
+    pub(crate) fn check_map(&self) -> Result<(), Diagnostic> {
         if self.folder.join(MAP).exists() { same_map(&self.folder, &self.map) } else { Ok(()) }
     }
 
     /// Writes files whole or not at all, and those of the map that are not there yet. Gives the names of what was written.
     ///
     /// # Errors
-    /// A [`Complaint`] that names the file.
-    pub(crate) fn write(&self, files: &[(&'static str, String)]) -> Result<Vec<String>, Complaint> {
+    /// A [`Diagnostic`] that names the file.
+    pub(crate) fn write(&self, files: &[(&'static str, String)]) -> Result<Vec<String>, Diagnostic> {
         let mut written = Vec::new();
         for (name, bytes) in self.map.iter().filter(|(name, _)| !self.folder.join(name).exists()) {
             put(&self.folder.join(name), bytes)?;
@@ -150,8 +150,8 @@ impl Site {
     /// Keeps a copy of the drawn files that another program wrote, in the editor's own folder. Gives their paths.
     ///
     /// # Errors
-    /// A [`Complaint`] that names the file.
-    pub(crate) fn keep_theirs(&self, changed: &[String]) -> Result<Vec<String>, Complaint> {
+    /// A [`Diagnostic`] that names the file.
+    pub(crate) fn keep_theirs(&self, changed: &[String]) -> Result<Vec<String>, Diagnostic> {
         let mut kept = Vec::new();
         for (name, bytes) in drawn_in(&self.folder)?.iter().filter(|(name, _)| changed.contains(*name)) {
             let path = self.folder.join(WORK).join(format!("theirs-{}-{name}", Digest::of(bytes).short()));
@@ -161,8 +161,8 @@ impl Site {
         Ok(kept)
     }
 
-    fn unusable(&self, faults: &[Fault]) -> Complaint {
-        Complaint::faults(
+    fn unusable(&self, faults: &[Fault]) -> Diagnostic {
+        Diagnostic::faults(
             format!("`{}` cannot be edited", self.folder.display()),
             faults,
             "mend the file by hand, or move it away: what is not there is drawn anew",
@@ -180,10 +180,10 @@ fn digests(drawn: &BTreeMap<String, Vec<u8>>) -> Disk {
 }
 
 /// The files of a map file, and what is drawn beside it where its folder is a location.
-fn of_folder(file: &Path, folder: &Path, own: bool) -> Result<BTreeMap<String, Vec<u8>>, Complaint> {
+fn of_folder(file: &Path, folder: &Path, own: bool) -> Result<BTreeMap<String, Vec<u8>>, Diagnostic> {
     let (_, mut files) = socrates_maps::load_raw(file).map_err(|faults| {
         let what = format!("the map `{}` is not usable", file.display());
-        Complaint::faults(what, &faults, "`socrates explain CODE` says what to do")
+        Diagnostic::faults(what, &faults, "`socrates explain CODE` says what to do")
     })?;
     if own {
         files.extend(drawn_in(folder)?);
@@ -191,22 +191,22 @@ fn of_folder(file: &Path, folder: &Path, own: bool) -> Result<BTreeMap<String, V
     Ok(files)
 }
 
-fn drawn_in(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, Complaint> {
+fn drawn_in(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, Diagnostic> {
     let there = DRAWN.iter().filter(|name| folder.join(name).exists());
     there.map(|name| Ok(((*name).to_owned(), read(&folder.join(name))?))).collect()
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, Complaint> {
+fn read(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     crate::files::bytes(path, MAX_BYTES, "check the file")
 }
 
 /// Whether a folder holds these files of a map, byte for byte.
-fn same_map(folder: &Path, map: &BTreeMap<String, Vec<u8>>) -> Result<(), Complaint> {
+fn same_map(folder: &Path, map: &BTreeMap<String, Vec<u8>>) -> Result<(), Diagnostic> {
     for (name, bytes) in map {
         let path = folder.join(name);
         if path.exists() && read(&path)? != *bytes {
             let what = format!("`{}` is another map than the one that is drawn on", path.display());
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 what,
                 "end the editor and begin it anew on that folder, or name another with `--out`",
             ));
@@ -215,7 +215,7 @@ fn same_map(folder: &Path, map: &BTreeMap<String, Vec<u8>>) -> Result<(), Compla
     Ok(())
 }
 
-fn unknown(given: &str, path: &Path, why: Complaint) -> Complaint {
+fn unknown(given: &str, path: &Path, why: Diagnostic) -> Diagnostic {
     if path.exists() {
         return why;
     }
@@ -223,14 +223,14 @@ fn unknown(given: &str, path: &Path, why: Complaint) -> Complaint {
         "give a folder with a map (map.yaml and its image), a map file, or one of: {}",
         socrates_maps::shipped::names().join(", ")
     );
-    Complaint::input(format!("there is no location `{given}`"), hint)
+    Diagnostic::input(format!("there is no location `{given}`"), hint)
 }
 
 /// Writes a file beside its place, makes it durable, and puts it there in one step.
-fn put(path: &Path, bytes: &[u8]) -> Result<(), Complaint> {
+fn put(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     let cannot = |why: std::io::Error| {
         let what = format!("cannot write `{}`: {why}", path.display());
-        Complaint::input(what, "check the folder; what is drawn is in the journal").with_code(Code::Ours)
+        Diagnostic::input(what, "check the folder; what is drawn is in the journal").with_code(Code::Ours)
     };
     let folder = path.parent().unwrap_or_else(|| Path::new("."));
     std::fs::create_dir_all(folder).map_err(cannot)?;

@@ -20,7 +20,7 @@ use socrates_model::{AuthorSpec, Digest};
 
 use crate::bundler::Bundler;
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::keep::Keep;
 use crate::output::Printer;
@@ -51,7 +51,7 @@ pub struct AuthorOptions {
 }
 
 /// Evaluates.
-pub async fn evaluate(talk: &Printer, config: &Config, options: &AuthorOptions) -> Result<(), Complaint> {
+pub async fn evaluate(talk: &Printer, config: &Config, options: &AuthorOptions) -> Result<(), Diagnostic> {
     let spec = Spec::load(&options.spec)?.with_grid(options.author.as_ref())?;
     let cases = limited(spec.cases(), options.limit);
     talk.line(&format!(
@@ -140,9 +140,9 @@ impl Maker<'_> {
         cases: &[Case],
         work: &Path,
         bundles: Option<&Path>,
-    ) -> Result<Vec<Outcome>, Complaint> {
+    ) -> Result<Vec<Outcome>, Diagnostic> {
         std::fs::create_dir_all(work).map_err(|why| {
-            Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
+            Diagnostic::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
         })?;
         let own = flags_of(arm);
         let config = self.config.clone().with(&own)?;
@@ -156,7 +156,7 @@ impl Maker<'_> {
                 let id = scenario_id(&prepared.name, case.seed, index, u32::MAX)?;
                 Ok(Wanted { id, index: 0, seed: case.seed, prepared })
             })
-            .collect::<Result<Vec<_>, Complaint>>()?;
+            .collect::<Result<Vec<_>, Diagnostic>>()?;
         let options = RunOptions { workers: self.options.workers, ..RunOptions::plain(self.spec.seed) };
         let making = Making { talk: self.talk, config: &config, options: &options, work, wanted: &wanted };
         let mut bundler = bundles.map(|root| Bundler::start(root, work, Keep::Folders, &wanted, &prepared));
@@ -172,12 +172,12 @@ impl Maker<'_> {
     }
 
     /// The table of injected faults, on the offline author's answers.
-    async fn confusion(&self, cases: &[Case]) -> Result<(), Complaint> {
+    async fn confusion(&self, cases: &[Case]) -> Result<(), Diagnostic> {
         let offline = Arm { author: AuthorSpec::Offline, ..Arm::default() };
         let prepared = cases
             .iter()
             .map(|case| Ok((self.prepare(&offline, case, self.config)?, case.seed)))
-            .collect::<Result<Vec<_>, Complaint>>()?;
+            .collect::<Result<Vec<_>, Diagnostic>>()?;
         let table = confusion::table(self.talk, &prepared).await;
         let shown = self.options.spec.display().to_string();
         let page = self.options.out.join("confusion.md");
@@ -187,7 +187,7 @@ impl Maker<'_> {
         Ok(())
     }
 
-    fn prepare(&self, arm: &Arm, case: &Case, config: &Config) -> Result<Prepared, Complaint> {
+    fn prepare(&self, arm: &Arm, case: &Case, config: &Config) -> Result<Prepared, Diagnostic> {
         let rates = arm.faults_unguided.as_ref().filter(|_| !case.guided).or(arm.faults.as_ref());
         let rates = rates.and_then(|name| self.spec.rates.get(name)).into_iter().flatten();
         let options = RunOptions {

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Deserialize;
 use socrates_model::AuthorSpec;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::protocol::Door;
 
 /// Scenarios of one arm at most.
@@ -187,12 +187,12 @@ pub(super) struct Case {
 
 impl Spec {
     /// The specification of this name, or of this file.
-    pub(super) fn load(what: &Path) -> Result<Self, Complaint> {
+    pub(super) fn load(what: &Path) -> Result<Self, Diagnostic> {
         let mut spec: Self = DOOR.read(what)?;
         if let Some(name) = spec.like.take() {
             let shown = what.display().to_string();
             if !DOOR.ships(&name) || name == shown {
-                return Err(Complaint::input(
+                return Err(Diagnostic::input(
                     format!("the evaluation `{shown}` is to be like `{name}`, which does not come with the program"),
                     format!("there is {}", DOOR.names()),
                 ));
@@ -206,13 +206,13 @@ impl Spec {
     /// The specification with the arms of its grid behind its own, asked of this author where one is given.
     ///
     /// # Errors
-    /// A complaint where an author is given and there is no grid that could take it.
-    pub(super) fn with_grid(mut self, author: Option<&AuthorSpec>) -> Result<Self, Complaint> {
+    /// A diagnostic where an author is given and there is no grid that could take it.
+    pub(super) fn with_grid(mut self, author: Option<&AuthorSpec>) -> Result<Self, Diagnostic> {
         match self.grid.take() {
             Some(grid) => self.arms.extend(grid.arms(author)),
             None => {
                 if let Some(author) = author {
-                    return Err(Complaint::input(
+                    return Err(Diagnostic::input(
                         format!("`--author {author}` is for a specification with a `[grid]`, and this has none"),
                         "the arms of this one name their own authors; `evaluate author arms --author …` takes one",
                     ));

@@ -25,11 +25,11 @@ use socrates_experiment::{CellResult, Figures, Limited, Pairing, Played, Spec, c
 use socrates_model::Digest;
 use socrates_stream::csv::joined;
 
-use crate::bench::machine;
 use crate::config::Config;
 use crate::cores;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
+use crate::machine;
 use crate::output::Printer;
 use crate::progress::Progress;
 use crate::protocol::Door;
@@ -40,7 +40,7 @@ const ROUND: usize = 64;
 /// Cells that are told a line each; more are left to the page.
 const TOLD: usize = 40;
 /// Where specifications come in.
-pub(crate) const DOOR: Door = Door {
+pub const DOOR: Door = Door {
     what: "experiment",
     shipped: &[
         ("reliability", include_str!("../../../../prompts/protocols/reliability.toml")),
@@ -98,7 +98,7 @@ impl Done {
 /// # Errors
 /// A specification that cannot be read or done; a folder that cannot be written to; a result that was lost or doubled, or a state
 /// that the checker complains of, with a code of its own, after everything is written.
-pub async fn experiment(talk: &Printer, config: &Config, options: &ExperimentOptions) -> Result<(), Complaint> {
+pub async fn experiment(talk: &Printer, config: &Config, options: &ExperimentOptions) -> Result<(), Diagnostic> {
     let spec = load(&options.spec, options.scenarios)?;
     let cells = plural(spec.cells().len(), "cell");
     talk.line(&format!("experiment {}: {cells} of {}", spec.title, plural(spec.scenarios as usize, "scenario")));
@@ -149,12 +149,12 @@ pub async fn experiment(talk: &Printer, config: &Config, options: &ExperimentOpt
     }
     let what = format!("{} of {cells} lost or doubled something, or broke a rule", bad.len());
     let hint = "this is a fault of ours: please report it with spec.lock.toml, which does it again";
-    Err(Complaint { causes: bad, result: Some(Box::new(object)), ..Complaint::input(what, hint) }
+    Err(Diagnostic { causes: bad, result: Some(Box::new(object)), ..Diagnostic::input(what, hint) }
         .with_code(Code::Unsafe))
 }
 
 /// A specification with every default, and so many scenarios of each cell where that is said.
-pub(crate) fn load(from: &Path, scenarios: Option<u32>) -> Result<Spec, Complaint> {
+pub fn load(from: &Path, scenarios: Option<u32>) -> Result<Spec, Diagnostic> {
     let mut spec: Spec = DOOR.read(from)?;
     spec.scenarios = scenarios.unwrap_or(spec.scenarios);
     checked(spec).map_err(|problems| DOOR.refused(from, problems))
@@ -186,7 +186,7 @@ fn simulated(talk: &Printer, spec: &Spec) -> Done {
 }
 
 /// Plays every unit on processes, one after the other, so that none is measured while another takes its cores.
-async fn on_processes(talk: &Printer, config: &Config, spec: &Spec, out: &Path) -> Result<Done, Complaint> {
+async fn on_processes(talk: &Printer, config: &Config, spec: &Spec, out: &Path) -> Result<Done, Diagnostic> {
     let root = out.join(PROCESSES);
     let file = root.join("spec.toml");
     files::write(&file, values(spec)?.as_bytes())?;
@@ -209,14 +209,14 @@ async fn on_processes(talk: &Printer, config: &Config, spec: &Spec, out: &Path) 
 }
 
 /// The specification as a file.
-fn values(spec: &Spec) -> Result<String, Complaint> {
+fn values(spec: &Spec) -> Result<String, Diagnostic> {
     toml::to_string(spec).map_err(|why| {
-        Complaint::input(format!("the specification cannot be written down again: {why}"), "").with_code(Code::Ours)
+        Diagnostic::input(format!("the specification cannot be written down again: {why}"), "").with_code(Code::Ours)
     })
 }
 
 /// Writes every file; the page last.
-fn write(out: &Path, told: &page::Told<'_>, attempts: &[String], page: &str) -> Result<(), Complaint> {
+fn write(out: &Path, told: &page::Told<'_>, attempts: &[String], page: &str) -> Result<(), Diagnostic> {
     let with_head = |head: &str, lines: Vec<String>| format!("{head}\n{}\n", lines.join("\n"));
     let rows = |one: &CellResult| -> Vec<String> {
         one.scenarios.iter().map(|row| joined(tables::scenario(one.cell.number, row))).collect()
@@ -248,7 +248,7 @@ fn write(out: &Path, told: &page::Told<'_>, attempts: &[String], page: &str) -> 
 }
 
 /// The specification with every value, and what came of it by digest.
-fn lock(spec: &Spec, tables: &[(&str, String)]) -> Result<String, Complaint> {
+fn lock(spec: &Spec, tables: &[(&str, String)]) -> Result<String, Diagnostic> {
     let values = values(spec)?;
     let again = match spec.level {
         Level::Simulator => "does it again, byte for byte, with this version",

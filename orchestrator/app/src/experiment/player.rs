@@ -19,7 +19,7 @@ use socrates_model::{FailureClass, Fault, FaultCode, Role, Verdict, Where};
 use tokio::time::sleep;
 
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::process::{self, Durability, OrchestratorOptions};
 use crate::work;
@@ -56,10 +56,10 @@ pub struct PlayOptions {
 ///
 /// # Errors
 /// A specification that has no such cell, no such part, no router, a store that cannot be used.
-pub async fn play(talk: &Printer, config: &Config, options: &PlayOptions) -> Result<(), Complaint> {
+pub async fn play(talk: &Printer, config: &Config, options: &PlayOptions) -> Result<(), Diagnostic> {
     let spec = super::load(&options.spec, None)?;
     let Some(cell) = spec.cells().into_iter().nth(options.cell) else {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("the experiment has no cell {}", options.cell),
             "cells are numbered from 0",
         ));
@@ -81,7 +81,7 @@ pub async fn play(talk: &Printer, config: &Config, options: &PlayOptions) -> Res
         return process::orchestrator(talk, config, &settings).await;
     };
     let stage: StageName = stage.parse().map_err(|bad: socrates_model::ids::BadId| {
-        Complaint::input(bad.to_string(), "stages: proposal, paths, behaviors, simulation, scoring")
+        Diagnostic::input(bad.to_string(), "stages: proposal, paths, behaviors, simulation, scoring")
     })?;
     let author = Author { spec, cell };
     match StageName::WORKERS.iter().position(|one| *one == stage) {
@@ -93,7 +93,7 @@ pub async fn play(talk: &Printer, config: &Config, options: &PlayOptions) -> Res
     }
 }
 
-async fn worker(config: &Config, options: &PlayOptions, stage: impl Stage) -> Result<(), Complaint> {
+async fn worker(config: &Config, options: &PlayOptions, stage: impl Stage) -> Result<(), Diagnostic> {
     let shutdown = process::leave(true);
     let connected = process::client(config, Part::Worker, &options.connect, super::processes::NAMESPACE, &options.name);
     let bus = connected.await.map_err(|why| why.with_code(Code::Ours))?;
@@ -106,7 +106,7 @@ async fn worker(config: &Config, options: &PlayOptions, stage: impl Stage) -> Re
     let served = socrates_kit::serve(stage, bus.clone(), settings, shutdown).await;
     bus.close().await;
     served
-        .map_err(|why| Complaint::input(format!("the {} worker stops: {why}", options.name), "").with_code(Code::Ours))
+        .map_err(|why| Diagnostic::input(format!("the {} worker stops: {why}", options.name), "").with_code(Code::Ours))
 }
 
 /// Tells the parent; one that is gone is told nothing.

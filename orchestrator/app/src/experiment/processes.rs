@@ -28,7 +28,7 @@ use super::player::SINCE;
 use crate::child::{command, leave};
 use crate::config::Config;
 use crate::crew::ours;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::router::Router;
 use crate::{calls, work};
 
@@ -81,7 +81,7 @@ struct Post {
 }
 
 /// Plays a batch of a cell: starts everything, does the faults that workers say are due, and reads what the store holds in the end.
-pub(super) async fn play(site: &Site<'_>, cell: &Cell, batch: u32) -> Result<Played, Complaint> {
+pub(super) async fn play(site: &Site<'_>, cell: &Cell, batch: u32) -> Result<Played, Diagnostic> {
     let dir = site.root.join(format!("cell-{}-batch-{batch}", cell.number));
     std::fs::create_dir_all(&dir).map_err(|why| unwritten(&dir, &why))?;
     let mut scenarios = asked(site.spec, cell, batch);
@@ -105,7 +105,7 @@ pub(super) async fn play(site: &Site<'_>, cell: &Cell, batch: u32) -> Result<Pla
         calls::submit(bus.as_ref(), BATCH, Priority::Normal, wanted).await?;
         let mut course = Course { observed: Observed::of(&scenarios), begun, heard, due: VecDeque::new(), up: true };
         course.run(&mut crowd).await?;
-        Ok::<Observed, Complaint>(course.observed)
+        Ok::<Observed, Diagnostic>(course.observed)
     }
     .await;
     listens.abort();
@@ -122,12 +122,12 @@ pub(super) async fn play(site: &Site<'_>, cell: &Cell, batch: u32) -> Result<Pla
     Ok(observed.closed(cell, rows, wrong))
 }
 
-fn unwritten(dir: &Path, why: &std::io::Error) -> Complaint {
-    Complaint::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder")
+fn unwritten(dir: &Path, why: &std::io::Error) -> Diagnostic {
+    Diagnostic::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder")
 }
 
 /// Tells of orchestrators that begin to serve, and of scenarios that end, until it is aborted.
-async fn listen(bus: Arc<dyn Bus>, tell: mpsc::Sender<Heard>) -> Result<tokio::task::JoinHandle<()>, Complaint> {
+async fn listen(bus: Arc<dyn Bus>, tell: mpsc::Sender<Heard>) -> Result<tokio::task::JoinHandle<()>, Diagnostic> {
     let mut presence = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| ours(&why.to_string()))?;
     let ends = async move {
         let (bus, tell) = (bus, tell);
@@ -168,7 +168,7 @@ struct Crowd<'a> {
 }
 
 impl Crowd<'_> {
-    fn start_all(&mut self) -> Result<(), Complaint> {
+    fn start_all(&mut self) -> Result<(), Diagnostic> {
         let mut places = vec![(None, "orchestrator".to_owned())];
         for stage in Stage::WORKERS {
             let of = |number: u32| (Some(stage), format!("{stage}-{number}"));
@@ -189,7 +189,7 @@ impl Crowd<'_> {
         name: &str,
         place: usize,
         life: u32,
-    ) -> Result<(Child, Option<ChildStdin>), Complaint> {
+    ) -> Result<(Child, Option<ChildStdin>), Diagnostic> {
         let log = self.dir.join(format!("{name}.log"));
         let log =
             std::fs::OpenOptions::new().create(true).append(true).open(&log).map_err(|why| unwritten(&log, &why))?;
@@ -219,7 +219,7 @@ impl Crowd<'_> {
     }
 
     /// Starts the next process at a place.
-    fn again(&mut self, place: usize) -> Result<(), Complaint> {
+    fn again(&mut self, place: usize) -> Result<(), Diagnostic> {
         let Some(post) = self.posts.get(place) else { return Ok(()) };
         let (stage, name, life) = (post.stage, post.name.clone(), post.life.saturating_add(1));
         let (child, pipe) = self.spawn(stage, &name, place, life)?;
@@ -230,7 +230,7 @@ impl Crowd<'_> {
     }
 
     /// Waits until every worker is known to the orchestrator.
-    async fn gathered(&mut self, bus: &dyn Bus) -> Result<(), Complaint> {
+    async fn gathered(&mut self, bus: &dyn Bus) -> Result<(), Diagnostic> {
         let begun = Instant::now();
         while begun.elapsed() < START {
             if let Ok(reply) = calls::counts(bus, "").await
@@ -248,7 +248,7 @@ impl Crowd<'_> {
     }
 
     /// Kills the process at a place and starts another; whether it was this signal that ended it.
-    async fn kill(&mut self, place: usize) -> Result<bool, Complaint> {
+    async fn kill(&mut self, place: usize) -> Result<bool, Diagnostic> {
         use std::os::unix::process::ExitStatusExt as _;
         let Some(post) = self.posts.get_mut(place) else { return Ok(false) };
         let sent = post.child.start_kill().is_ok();
@@ -286,7 +286,7 @@ impl Crowd<'_> {
     }
 
     /// Starts again what ended by itself, and says what.
-    fn tend(&mut self) -> Result<Vec<String>, Complaint> {
+    fn tend(&mut self) -> Result<Vec<String>, Diagnostic> {
         let mut words = Vec::new();
         for place in 0..self.posts.len() {
             let Some(post) = self.posts.get_mut(place) else { continue };
@@ -353,7 +353,7 @@ impl Course {
     }
 
     /// Until every scenario has ended.
-    async fn run(&mut self, crowd: &mut Crowd<'_>) -> Result<(), Complaint> {
+    async fn run(&mut self, crowd: &mut Crowd<'_>) -> Result<(), Diagnostic> {
         let (times, policy) = (&crowd.site.spec.times_ms, &crowd.cell.policy);
         let longest =
             times.timeout.saturating_add(times.cut).saturating_add(policy.cap_ms).saturating_add(policy.lease_ms);
@@ -387,7 +387,7 @@ impl Course {
         Ok(())
     }
 
-    async fn hears(&mut self, crowd: &mut Crowd<'_>, heard: Heard) -> Result<(), Complaint> {
+    async fn hears(&mut self, crowd: &mut Crowd<'_>, heard: Heard) -> Result<(), Diagnostic> {
         match heard {
             Heard::Rose(at) => {
                 self.up = true;
@@ -420,7 +420,7 @@ impl Course {
     }
 
     /// Kills the orchestrator, which serves.
-    async fn kills_orchestrator(&mut self, crowd: &mut Crowd<'_>, key: JobKey, attempt: u32) -> Result<(), Complaint> {
+    async fn kills_orchestrator(&mut self, crowd: &mut Crowd<'_>, key: JobKey, attempt: u32) -> Result<(), Diagnostic> {
         let at = Instant::now();
         self.up = false;
         if crowd.kill(0).await? {
@@ -430,7 +430,7 @@ impl Course {
     }
 }
 
-/// Reads of a complaint that it is about what was played, and nobody's input.
-pub(super) fn about(cell: usize, why: Complaint) -> Complaint {
-    Complaint { what: format!("cell {cell} could not be played: {}", why.what), ..why }.with_code(Code::Ours)
+/// Reads of a diagnostic that it is about what was played, and nobody's input.
+pub(super) fn about(cell: usize, why: Diagnostic) -> Diagnostic {
+    Diagnostic { what: format!("cell {cell} could not be played: {}", why.what), ..why }.with_code(Code::Ours)
 }

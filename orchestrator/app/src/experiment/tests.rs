@@ -22,7 +22,7 @@ pause_ms = 100
 "#;
 
 /// Runs a specification in a folder; its files are in `out` there.
-fn run(folder: &Path, spec: &Path, out: &str) -> Result<(), Complaint> {
+fn run(folder: &Path, spec: &Path, out: &str) -> Result<(), Diagnostic> {
     let options = ExperimentOptions { spec: spec.to_path_buf(), out: folder.join(out), scenarios: None };
     let config = Config::load(None, std::iter::empty(), &[])?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
@@ -89,10 +89,10 @@ fn what_cannot_be_done_is_said_with_file_key_value_and_what_is_allowed() {
     ] {
         assert!(SMALL.contains(from), "{from}");
         std::fs::write(&spec, SMALL.replacen(from, to, 1)).unwrap();
-        let complaint = run(folder.path(), &spec, "none").unwrap_err();
-        let told = complaint.to_string();
-        assert_eq!(complaint.code, Code::Input, "{told}");
-        assert!(told.contains(words) && told.contains("odd.toml") && !complaint.hint.is_empty(), "{words}: {told}");
+        let diagnostic = run(folder.path(), &spec, "none").unwrap_err();
+        let told = diagnostic.to_string();
+        assert_eq!(diagnostic.code, Code::Input, "{told}");
+        assert!(told.contains(words) && told.contains("odd.toml") && !diagnostic.hint.is_empty(), "{words}: {told}");
     }
     assert!(!folder.path().join("none").exists(), "nothing is written before all of it can be done");
 }
@@ -106,9 +106,9 @@ fn what_cannot_be_done_to_processes_is_refused_by_its_name_with_what_can() {
         let text =
             SMALL.replace("worker_kill", kind).replace("scenarios = 40", "scenarios = 40\nlevel = \"processes\"");
         std::fs::write(&spec, text).unwrap();
-        let complaint = run(folder.path(), &spec, "none").unwrap_err();
-        let told = complaint.to_string();
-        assert_eq!(complaint.code, Code::Input, "{told}");
+        let diagnostic = run(folder.path(), &spec, "none").unwrap_err();
+        let told = diagnostic.to_string();
+        assert_eq!(diagnostic.code, Code::Input, "{told}");
         assert!(told.contains(&format!("`{kind}` with `level = \"processes\"`")) && told.contains(hint), "{told}");
     }
     assert!(!folder.path().join("none").exists());

@@ -6,15 +6,15 @@ use rusqlite::types::Value as Cell;
 use rusqlite::{Connection, params_from_iter};
 use socrates_export::scenario::{Database, Value};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 
 /// Writes a database anew; the same tables give the same bytes.
-pub(super) fn write(path: &Path, database: &Database) -> Result<(), Complaint> {
+pub(super) fn write(path: &Path, database: &Database) -> Result<(), Diagnostic> {
     // Makes the folder, and says what keeps a file from being written there.
     files::write(path, b"")?;
     fill(path, database).map_err(|why| {
-        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another place")
+        Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another place")
     })
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::door::{Door, Line};
 use super::key::{self, Named};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 
 /// The columns, in any order.
@@ -105,7 +105,7 @@ impl Tables {
 }
 
 /// Reads a key and the tables of answers of its page; what is wrong with the tables stands in the door.
-pub(super) fn judged(door: &mut Door, labels: &[PathBuf], key: &Path) -> Result<(Vec<Named>, Answers), Complaint> {
+pub(super) fn judged(door: &mut Door, labels: &[PathBuf], key: &Path) -> Result<(Vec<Named>, Answers), Diagnostic> {
     let text = files::text(key, MAX_BYTES, "--key names the key.csv that was written beside the page")?;
     let key = key::read(&text, &key.display().to_string())?;
     let runs: BTreeSet<&str> = key.iter().map(|named| named.name.as_str()).collect();
@@ -166,7 +166,7 @@ mod tests {
         let runs: BTreeSet<&str> = ["r01", "r02"].into();
         tables.read(&mut door, &format!("run,rater,as_asked,sentence\n{lines}"), "a.csv", &runs);
         tables.whole(&mut door, &runs);
-        door.shut("it", "", ()).map_or_else(|complaint| complaint.to_string(), |()| String::new())
+        door.shut("it", "", ()).map_or_else(|diagnostic| diagnostic.to_string(), |()| String::new())
     }
 
     #[test]

@@ -15,7 +15,7 @@ use super::key::{self, Named};
 use super::{MOST, PageOptions, folders, texts, too_many};
 use crate::batch;
 use crate::bundle;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
 use crate::output::Printer;
 use crate::progress::Progress;
@@ -50,10 +50,10 @@ pub(super) struct Candidate {
 }
 
 /// Writes the page and what lies beside it.
-pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Result<(), Complaint> {
+pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Result<(), Diagnostic> {
     if !socrates_draw::stills::STILLS.contains(&blind.stills) {
         let (least, most) = (socrates_draw::stills::STILLS.start(), socrates_draw::stills::STILLS.end());
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`--stills` is `{}`", blind.stills),
             format!("allowed: {least} to {most} stills of a run"),
         ));
@@ -63,7 +63,7 @@ pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Resu
     candidates.extend(self::candidates(&blind.mixed_in, options.first, true)?);
     apart(&candidates)?;
     if asked == 0 {
-        return Err(Complaint::input("the bundles hold no run with a robot", "`socrates run` makes one"));
+        return Err(Diagnostic::input("the bundles hold no run with a robot", "`socrates run` makes one"));
     }
     if candidates.len() > MOST {
         return Err(too_many(candidates.len()));
@@ -87,7 +87,7 @@ pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Resu
         page.add(&Labeled { name, texts: &texts, location, paths, all: &all, recording });
         let svg = socrates_draw::contact_sheet(name, location, recording, blind.stills, Signs::Numbers);
         let png = socrates_draw::png_from_svg(&svg, 1.0).map_err(|why| {
-            Complaint::input(format!("the stills of `{}` cannot be drawn: {why}", dir.display()), "")
+            Diagnostic::input(format!("the stills of `{}` cannot be drawn: {why}", dir.display()), "")
                 .with_code(Code::Ours)
         })?;
         files::write(&folder.join(STILLS).join(format!("{name}.png")), &png)?;
@@ -123,7 +123,7 @@ pub(super) fn page(talk: &Printer, options: &PageOptions, blind: &Blind) -> Resu
 }
 
 /// The runs of these bundles, without the twins that have no robot.
-pub(super) fn candidates(bundles: &[PathBuf], first: bool, control: bool) -> Result<Vec<Candidate>, Complaint> {
+pub(super) fn candidates(bundles: &[PathBuf], first: bool, control: bool) -> Result<Vec<Candidate>, Diagnostic> {
     let mut found = Vec::new();
     for dir in folders(bundles)? {
         let manifest = bundle::manifest(&dir).ok_or_else(|| batch::none(&dir))?;
@@ -135,12 +135,12 @@ pub(super) fn candidates(bundles: &[PathBuf], first: bool, control: bool) -> Res
 }
 
 /// Refuses a bundle that is to be judged and a control at once.
-fn apart(candidates: &[Candidate]) -> Result<(), Complaint> {
+fn apart(candidates: &[Candidate]) -> Result<(), Diagnostic> {
     let settled = |dir: &Path| dir.canonicalize().unwrap_or_else(|_why| dir.to_path_buf());
     let controls: BTreeSet<PathBuf> =
         candidates.iter().filter(|candidate| candidate.control).map(|candidate| settled(&candidate.dir)).collect();
     match candidates.iter().find(|candidate| !candidate.control && controls.contains(&settled(&candidate.dir))) {
-        Some(both) => Err(Complaint::input(
+        Some(both) => Err(Diagnostic::input(
             format!("`{}` is named as a bundle and with --mixed-in", both.dir.display()),
             "a run is judged or a control, not both: name other folders",
         )),
@@ -165,7 +165,7 @@ pub(super) fn names(count: usize) -> Vec<String> {
 }
 
 /// Refuses a folder with stills of another page: a judge would take them for runs.
-fn no_others(stills: &Path, names: &[String]) -> Result<(), Complaint> {
+fn no_others(stills: &Path, names: &[String]) -> Result<(), Diagnostic> {
     let mut old: Vec<String> = std::fs::read_dir(stills)
         .into_iter()
         .flatten()
@@ -174,7 +174,7 @@ fn no_others(stills: &Path, names: &[String]) -> Result<(), Complaint> {
         .collect();
     old.sort();
     match old.first() {
-        Some(file) => Err(Complaint::input(
+        Some(file) => Err(Diagnostic::input(
             format!("`{}` is none of these runs", stills.join(file).display()),
             "remove it, or choose another folder with --out FOLDER/labels.html",
         )),

@@ -14,7 +14,7 @@ use super::door::Door;
 use super::key::Named;
 use super::opinion::{self, Row};
 use super::share;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 use crate::words::plural;
@@ -38,7 +38,7 @@ pub struct CalibrateOptions {
 }
 
 /// Does the verb.
-pub fn calibrate(talk: &Printer, options: &CalibrateOptions) -> Result<(), Complaint> {
+pub fn calibrate(talk: &Printer, options: &CalibrateOptions) -> Result<(), Diagnostic> {
     let hint = format!("--opinion names the {} that `labels opinion` wrote", opinion::FILE);
     let text = files::text(&options.opinion, MAX_BYTES, &hint)?;
     let rows = opinion::read(&text, &options.opinion.display().to_string())?;
@@ -128,10 +128,10 @@ impl Calibration {
     }
 
     /// Refuses a judge of whom too little is known, or who tells little better than chance.
-    fn fit(&self) -> Result<(), Complaint> {
+    fn fit(&self) -> Result<(), Diagnostic> {
         let (shown, not) = (self.sensitivity.of, self.specificity.of);
         if shown < LEAST_LABELS || not < LEAST_LABELS {
-            let mut complaint = Complaint::input(
+            let mut diagnostic = Diagnostic::input(
                 format!(
                     "too few labels by people: {shown} facts shown and {not} not shown, of those that the judge decides"
                 ),
@@ -140,30 +140,30 @@ impl Calibration {
                      --mixed-in adds runs of which something did not happen"
                 ),
             );
-            complaint.causes = vec![
+            diagnostic.causes = vec![
                 format!("labels that the judge leaves open: {} shown, {} not shown", self.open.0, self.open.1),
                 "a run that does not count, planted facts and facts of a run whose judges name other words have no label".to_owned(),
             ];
-            return Err(complaint);
+            return Err(diagnostic);
         }
         let youden = youden(self.specificity, self.sensitivity).map_err(|why| ours(&why))?;
         if !can_correct(youden) {
-            let mut complaint = Complaint::input(
+            let mut diagnostic = Diagnostic::input(
                 format!(
                     "the judge tells little better than chance: q0 + q1 - 1 is {youden:.3}, less than {LEAST_YOUDEN}; no share is reported"
                 ),
                 "ask another model, with more stills (--stills 12), or leave the runs to people",
             );
-            complaint.causes = vec![
+            diagnostic.causes = vec![
                 format!("q1, facts that people call shown and the judge too: {}", share::words(self.sensitivity)),
                 format!("q0, facts that people call not shown and the judge too: {}", share::words(self.specificity)),
             ];
-            return Err(complaint);
+            return Err(diagnostic);
         }
         Ok(())
     }
 
-    fn told(&self, rows: &[Row], share: Option<&Corrected>) -> Result<Value, Complaint> {
+    fn told(&self, rows: &[Row], share: Option<&Corrected>) -> Result<Value, Diagnostic> {
         let theta = share.map(|found| {
             json!({"raw": found.raw, "unclipped": found.unclipped, "share": found.share.estimate, "low": found.share.low,
                 "high": found.share.high, "standard_error": found.standard_error, "variance": found.standard_error.powi(2)})
@@ -179,7 +179,7 @@ impl Calibration {
     }
 
     /// The corrected share of the facts of runs that nobody labeled; nothing where there are none.
-    fn share(&self) -> Result<Option<Corrected>, Complaint> {
+    fn share(&self) -> Result<Option<Corrected>, Diagnostic> {
         if self.said.of == 0 {
             return Ok(None);
         }
@@ -241,8 +241,8 @@ impl Calibration {
     }
 }
 
-fn ours(why: &StatsError) -> Complaint {
-    Complaint::input(why.to_string(), "please report the tables").with_code(crate::exit::Code::Ours)
+fn ours(why: &StatsError) -> Diagnostic {
+    Diagnostic::input(why.to_string(), "please report the tables").with_code(crate::exit::Code::Ours)
 }
 
 const fn add(count: &mut Count, hit: bool) {

@@ -13,7 +13,7 @@ use super::key::Named;
 use super::share;
 use super::{chunks, folders, meets, shown};
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::output::Printer;
 
 /// A judge who passes more than this share of the controls is to be replaced: 4 of 20.
@@ -31,7 +31,7 @@ pub struct CompareOptions {
 }
 
 /// Does the verb.
-pub fn compare(talk: &Printer, options: &CompareOptions) -> Result<(), Complaint> {
+pub fn compare(talk: &Printer, options: &CompareOptions) -> Result<(), Diagnostic> {
     let mut door = Door::default();
     let (key, answers) = answers::judged(&mut door, &options.labels, &options.key)?;
     let verdicts = verdicts(&mut door, &options.key, &key, &folders(&options.bundles)?);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_stream::csv::Table;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Problems are listed up to so many.
 const LISTED: usize = 40;
@@ -91,19 +91,19 @@ impl Door {
     }
 
     /// What was read where nothing is wrong.
-    pub(super) fn shut<T>(self, what: &str, hint: &str, found: T) -> Result<T, Complaint> {
+    pub(super) fn shut<T>(self, what: &str, hint: &str, found: T) -> Result<T, Diagnostic> {
         if self.problems.is_empty() {
             return Ok(found);
         }
         let count = self.problems.len();
-        let mut complaint = Complaint::input(
+        let mut diagnostic = Diagnostic::input(
             format!("{what} cannot be taken: {count} {}", if count == 1 { "problem" } else { "problems" }),
             hint,
         );
-        complaint.causes = self.problems.into_iter().take(LISTED).collect();
+        diagnostic.causes = self.problems.into_iter().take(LISTED).collect();
         if count > LISTED {
-            complaint.causes.push(format!("and {} more", count - LISTED));
+            diagnostic.causes.push(format!("and {} more", count - LISTED));
         }
-        Err(complaint)
+        Err(diagnostic)
     }
 }

@@ -3,7 +3,7 @@
 use socrates_stream::csv::joined;
 
 use super::door::Door;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Its name beside the page.
 pub(super) const FILE: &str = "key.csv";
@@ -40,7 +40,7 @@ pub(super) fn write(rows: &[Named]) -> String {
 }
 
 /// Reads a key; everything that is wrong with it is told at once.
-pub(super) fn read(text: &str, file: &str) -> Result<Vec<Named>, Complaint> {
+pub(super) fn read(text: &str, file: &str) -> Result<Vec<Named>, Diagnostic> {
     let mut door = Door::default();
     let mut found: Vec<Named> = Vec::new();
     for row in door.rows(text, file, &COLUMNS) {

@@ -17,7 +17,7 @@ use super::task::{self, Task, Truth};
 use super::{MOST, too_many};
 use crate::batch;
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 use crate::progress::Progress;
@@ -65,17 +65,17 @@ struct Film {
 /// # Errors
 /// Nothing that is asked, bundles that hold no run, too many runs, no pair or no second goal where these are asked for, more repeats
 /// than films.
-pub fn observe(talk: &Printer, options: &ObserveOptions) -> Result<(), Complaint> {
+pub fn observe(talk: &Printer, options: &ObserveOptions) -> Result<(), Diagnostic> {
     let asks = options.slider || options.belief || options.pairs;
     if !asks {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "nothing is asked of observers",
             "--slider, --belief or --pairs; several may stand together",
         ));
     }
     let mut found = candidates(&options.bundles, options.first, false)?;
     if found.is_empty() {
-        return Err(Complaint::input("the bundles hold no run with a robot", "`socrates run` makes one"));
+        return Err(Diagnostic::input("the bundles hold no run with a robot", "`socrates run` makes one"));
     }
     if found.len() > MOST {
         return Err(too_many(found.len()));
@@ -150,12 +150,12 @@ fn tasks(
     films: &[Film],
     options: &ObserveOptions,
     side: &mut dyn FnMut() -> bool,
-) -> Result<Vec<(Task, Look)>, Complaint> {
+) -> Result<Vec<(Task, Look)>, Diagnostic> {
     let mut looks: Vec<Look> = Vec::new();
     if options.slider {
         let control = options.control.min(films.len());
         if options.repeat > control {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`--repeat {}` is more than the `{control}` films that every observer rates", options.repeat),
                 "name more bundles, more --control or fewer repeats: only a film that everybody rates can come again",
             ));
@@ -168,7 +168,7 @@ fn tasks(
         let before = looks.len();
         looks.extend(with.map(|film| Look::Belief { film }));
         if looks.len() == before {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 "no run has a second place that it might be going to",
                 "a belief needs a scene graph with a junction or an end 3 m or more from goal and start; leave out --belief",
             ));
@@ -188,7 +188,7 @@ fn tasks(
             }
         }
         if looks.len() == before {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 "no two runs are of one scenario and seed under different planners",
                 "`socrates compare` makes them; leave out --first, or --pairs",
             ));

@@ -15,7 +15,7 @@ use socrates_study::stats::Level;
 use super::door::Door;
 use super::shown;
 use super::task::{self, Task, Truth};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 
@@ -46,7 +46,7 @@ struct Said {
 ///
 /// # Errors
 /// A table or a key that cannot be taken, with every line that is wrong; a file that cannot be written.
-pub fn observed(talk: &Printer, options: &ObservedOptions) -> Result<(), Complaint> {
+pub fn observed(talk: &Printer, options: &ObservedOptions) -> Result<(), Diagnostic> {
     let text = files::text(&options.key, MAX_BYTES, "the observe-key.csv that `labels observe` wrote")?;
     let tasks = task::read(&text, &options.key.display().to_string())?;
     let mut tables = Vec::new();
@@ -91,7 +91,7 @@ pub fn observed(talk: &Printer, options: &ObservedOptions) -> Result<(), Complai
 /// Answers to one question by one rater: a value, or ten a second.
 type Answers = BTreeMap<(String, String), Vec<(Option<f64>, String)>>;
 
-fn read(tables: &[(String, String)], tasks: &[Task]) -> Result<Said, Complaint> {
+fn read(tables: &[(String, String)], tasks: &[Task]) -> Result<Said, Diagnostic> {
     let mut door = Door::default();
     let known: BTreeMap<&str, &Task> = tasks.iter().map(|task| (task.id.as_str(), task)).collect();
     let mut answers: Answers = BTreeMap::new();

@@ -31,7 +31,7 @@ use self::plant::Stated;
 use self::poll::{Held, Judge, Repeat};
 use super::blind::{Candidate, candidates, names};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::ledger::Ledger;
 use crate::output::Printer;
 use crate::progress::Progress;
@@ -73,10 +73,10 @@ pub struct OpinionOptions {
 }
 
 /// Does the verb.
-pub async fn opinion(talk: &Printer, config: &Config, options: &OpinionOptions) -> Result<(), Complaint> {
+pub async fn opinion(talk: &Printer, config: &Config, options: &OpinionOptions) -> Result<(), Diagnostic> {
     let setting = options.model.clone().unwrap_or_else(|| config.text("author.second_opinion"));
     if setting.is_empty() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "nobody is named who could give a second opinion",
             "it is off unless a model is named: --model anthropic:MODEL, or `author.second_opinion` in the configuration",
         ));
@@ -99,11 +99,11 @@ pub async fn opinion(talk: &Printer, config: &Config, options: &OpinionOptions) 
     Ok(())
 }
 
-fn within(flag: &str, value: usize, allowed: &RangeInclusive<usize>) -> Result<(), Complaint> {
+fn within(flag: &str, value: usize, allowed: &RangeInclusive<usize>) -> Result<(), Diagnostic> {
     if allowed.contains(&value) {
         return Ok(());
     }
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         format!("`{flag}` is `{value}`"),
         format!("allowed: {} to {}", allowed.start(), allowed.end()),
     ))
@@ -118,10 +118,10 @@ struct Library {
 }
 
 impl Library {
-    fn of(bundles: &[PathBuf], first: bool) -> Result<Self, Complaint> {
+    fn of(bundles: &[PathBuf], first: bool) -> Result<Self, Diagnostic> {
         let runs = candidates(bundles, first, false)?;
         if runs.is_empty() {
-            return Err(Complaint::input("the bundles hold no run with a robot", "`socrates run` makes one"));
+            return Err(Diagnostic::input("the bundles hold no run with a robot", "`socrates run` makes one"));
         }
         let (mut stated, mut authors) = (Vec::new(), BTreeMap::new());
         for Candidate { dir, .. } in &runs {
@@ -138,7 +138,7 @@ impl Library {
     }
 
     /// Refuses a judge of the family of any author.
-    fn refuse_kin(&self, judge: &str) -> Result<(), Complaint> {
+    fn refuse_kin(&self, judge: &str) -> Result<(), Diagnostic> {
         let kin: Vec<String> = self
             .authors
             .iter()
@@ -150,12 +150,12 @@ impl Library {
         if kin.is_empty() {
             return Ok(());
         }
-        let mut complaint = Complaint::input(
+        let mut diagnostic = Diagnostic::input(
             format!("`{judge}` is of the family of an author, so its opinion is no second one"),
             "name a model of another family, or leave those bundles out",
         );
-        complaint.causes = kin.into_iter().take(NAMED).collect();
-        Err(complaint)
+        diagnostic.causes = kin.into_iter().take(NAMED).collect();
+        Err(diagnostic)
     }
 }
 
@@ -182,7 +182,7 @@ async fn ask(
     ledger: &mut Ledger,
     library: &Library,
     options: &OpinionOptions,
-) -> Result<Made, Complaint> {
+) -> Result<Made, Diagnostic> {
     let mut made = Made::default();
     let mut progress = Progress::new(*talk, "asking", library.runs.len());
     for (index, (candidate, run)) in library.runs.iter().zip(names(library.runs.len())).enumerate() {
@@ -209,7 +209,7 @@ async fn ask(
     Ok(made)
 }
 
-fn unasked(why: &AskError) -> Complaint {
+fn unasked(why: &AskError) -> Diagnostic {
     let hint =
         "what was answered is kept where the model is `replay:FOLDER=MODEL`: the same command goes on from there";
     authors::unasked("there is no second opinion".to_owned(), why, hint)
@@ -227,7 +227,7 @@ struct About {
 }
 
 impl About {
-    fn of(candidate: &Candidate, stated: &[Stated], options: &OpinionOptions) -> Result<Self, Complaint> {
+    fn of(candidate: &Candidate, stated: &[Stated], options: &OpinionOptions) -> Result<Self, Diagnostic> {
         let Candidate { dir, run, .. } = candidate;
         let bundle = bundle::read_some(dir, |_, entry| entry.run() == *run)?;
         let Some((recording, report)) = bundle.runs.first() else { return Err(crate::batch::none(dir)) };
@@ -237,7 +237,7 @@ impl About {
         let planted = plant::planted(stated, &facts, people_of(&bundle.reading), &bundle.reading, recording, seed);
         let svg = socrates_draw::contact_sheet(HEADING, &bundle.location, recording, options.stills, Signs::Letters);
         let png = socrates_draw::png_from_svg(&svg, 1.0).map_err(|why| {
-            Complaint::input(format!("the stills of `{}` cannot be drawn: {why}", dir.display()), "")
+            Diagnostic::input(format!("the stills of `{}` cannot be drawn: {why}", dir.display()), "")
                 .with_code(Code::Ours)
         })?;
         let question = question(&bundle.request, recording, &facts, &planted, options.stills);
@@ -325,7 +325,7 @@ impl Made {
         self.answers.push_str(&table::answers(name, &asked.names(), repeats));
     }
 
-    fn write(&self, out: &Path) -> Result<(), Complaint> {
+    fn write(&self, out: &Path) -> Result<(), Diagnostic> {
         for (name, png) in &self.sheets {
             files::write(&out.join(SHEETS).join(format!("{name}.png")), png)?;
         }

@@ -4,7 +4,7 @@ use socrates_draw::LookKind;
 use socrates_stream::csv::joined;
 
 use super::door::Door;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Its name beside the page.
 pub(super) const FILE: &str = "observe-key.csv";
@@ -58,7 +58,7 @@ pub(super) fn write(tasks: &[Task]) -> String {
 }
 
 /// Reads a key; everything that is wrong with it is told at once.
-pub(super) fn read(text: &str, file: &str) -> Result<Vec<Task>, Complaint> {
+pub(super) fn read(text: &str, file: &str) -> Result<Vec<Task>, Diagnostic> {
     let mut door = Door::default();
     let mut found: Vec<Task> = Vec::new();
     for row in door.rows(text, file, &COLUMNS) {

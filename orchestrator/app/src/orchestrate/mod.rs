@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use socrates_kit::{LocalBlobs, Stop};
-use socrates_link::{Bus, keys};
+use socrates_link::{Bus, ReignId, keys};
 use socrates_orchestrator::{Event, Policy, Row, State, step};
 use socrates_store::{Durability, SqliteStore, Store as _, StoreError};
 use tokio::sync::{mpsc, watch};
@@ -33,7 +33,7 @@ use tokio::task::JoinSet;
 
 use counts::Counts;
 use owner::Owner;
-use reader::{Disk, Inbound};
+use reader::{Disk, Inbound, Reign};
 
 /// Events that wait for the owner at most; beyond it the readers wait, then the bus.
 const LINE: usize = 1024;
@@ -113,7 +113,7 @@ pub(crate) async fn serve(
         circuit_percent: config.circuit_percent,
         ..Policy::default().asking_again(config.asks_again)
     });
-    let (store, mut state) = loop {
+    let (store, mut state, reign) = loop {
         let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
         let (policy, alone) = (policy.clone(), config.alone);
         let opened = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept, alone)).await;
@@ -140,7 +140,7 @@ pub(crate) async fn serve(
     {
         let serving = bus.serve(key).await.with_context(|| format!("serving `{key}`"))?;
         let disk = Disk { blobs: blobs.clone(), waits: config.waits, counts: counts.clone() };
-        tasks.spawn(reader::read(Arc::clone(&bus), epoch, serving, line.clone(), disk));
+        tasks.spawn(reader::read(Arc::clone(&bus), reign.clone(), serving, line.clone(), disk));
     }
     let (parts_bus, parts, moved) = (Arc::clone(&bus), blobs.clone(), counts.clone());
     tasks.spawn(async move {
@@ -185,9 +185,12 @@ fn open(
     policy: Policy,
     blobs: &LocalBlobs,
     alone: bool,
-) -> anyhow::Result<(SqliteStore, State)> {
+) -> anyhow::Result<(SqliteStore, State, Reign)> {
     let mut store = SqliteStore::open_with(at, durability)?;
     let snapshot = store.load().context("reading the job store")?;
+    let id = ReignId::fresh();
+    let known = store.begin(id.0).context("writing the start into the job store")?.into_iter().map(ReignId).collect();
+    let reign = Reign { epoch: snapshot.epoch, id, known };
     for digest in store.texts()? {
         // Looked into, not only for: a power cut may have left a file without its content.
         if blobs.get(&digest).is_err()
@@ -199,5 +202,5 @@ fn open(
     let mut state = State::restore(snapshot, policy, 0);
     let rows: Vec<Row> = step(&mut state, Event::Recover { alone }, 0).into_iter().filter_map(owner::row).collect();
     store.save(&rows)?;
-    Ok((store, state))
+    Ok((store, state, reign))
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use serde::de::DeserializeOwned;
 use socrates_kit::{BlobError, LocalBlobs};
-use socrates_link::{Ask, Bus, Presence, Serving, keys};
+use socrates_link::{Ask, Bus, Presence, ReignId, Serving, keys};
 use socrates_model::TraceContext;
 use socrates_model::wire::{Acquire, Beat, Control, Hello, Recorded, Release, Report, StatusAsk, Submit, Submitted};
 use tokio::sync::{mpsc, oneshot};
@@ -46,6 +46,17 @@ pub(super) struct Came {
     pub(super) trace: Option<TraceContext>,
 }
 
+/// The start of the orchestrator that reads, and those of its store before.
+#[derive(Debug, Clone)]
+pub(super) struct Reign {
+    /// Number of the start.
+    pub(super) epoch: u64,
+    /// This start.
+    pub(super) id: ReignId,
+    /// Starts whose workers are still workers of this store; this one among them.
+    pub(super) known: Arc<[ReignId]>,
+}
+
 /// Where artifacts are kept, and what is counted.
 #[derive(Clone)]
 pub(super) struct Disk {
@@ -60,14 +71,29 @@ pub(super) fn kind(key: &str) -> &str {
     key.rsplit('/').next().unwrap_or(key)
 }
 
-/// Reads one key until the bus closes. Whatever cannot be read is refused with the reason.
-pub(super) async fn read(bus: Arc<dyn Bus>, epoch: u64, mut serving: Serving, line: mpsc::Sender<Inbound>, disk: Disk) {
+/// Reads one key until the bus closes. Whatever cannot be read is refused with the reason, and so is a worker of another store: its
+/// attempts and reports would be taken for those of jobs that have the same names here.
+pub(super) async fn read(
+    bus: Arc<dyn Bus>,
+    reign: Reign,
+    mut serving: Serving,
+    line: mpsc::Sender<Inbound>,
+    disk: Disk,
+) {
+    let epoch = reign.epoch;
     let mut told_of_disk = false;
     while let Some(ask) = serving.next().await {
         let at = Instant::now();
         let key = ask.key().to_owned();
+        let ask = ask.in_reign(reign.id);
         let (question, trace) = match decode(&ask) {
-            Ok(read) => read,
+            Ok((.., Some(asked))) if !reign.known.contains(&asked) => {
+                tracing::debug!(key, "a worker of another job store asks");
+                disk.counts.refused(&key, Refusal::Refused);
+                told(ask.disown(bus.name(), epoch).await);
+                continue;
+            }
+            Ok((question, trace, _)) => (question, trace),
             Err(why) => {
                 tracing::warn!(key, why, "a message cannot be read");
                 disk.counts.refused(&key, Refusal::Unreadable);
@@ -112,27 +138,23 @@ pub(super) fn told(sent: Result<(), socrates_link::LinkError>) {
     }
 }
 
-fn decode(ask: &Ask) -> Result<(Question, Option<TraceContext>), String> {
-    let mut trace = None;
-    let question = question(ask, &mut trace)?;
-    Ok((question, trace))
-}
+/// A question, the trace that it says it is of, and the reign that it is for.
+type Decoded = (Question, Option<TraceContext>, Option<ReignId>);
 
-fn question(ask: &Ask, trace: &mut Option<TraceContext>) -> Result<Question, String> {
-    fn read<T: DeserializeOwned>(ask: &Ask, trace: &mut Option<TraceContext>) -> Result<T, String> {
+fn decode(ask: &Ask) -> Result<Decoded, String> {
+    fn read<T: DeserializeOwned>(ask: &Ask, question: fn(T) -> Question) -> Result<Decoded, String> {
         let envelope = ask.read(kind(ask.key())).map_err(|why| why.to_string())?;
-        *trace = envelope.traceparent;
-        Ok(envelope.body)
+        Ok((question(envelope.body), envelope.traceparent, envelope.reign))
     }
     match ask.key() {
-        keys::HELLO => read(ask, trace).map(Question::Hello),
-        keys::ACQUIRE => read(ask, trace).map(Question::Acquire),
-        keys::BEAT => read(ask, trace).map(Question::Beat),
-        keys::REPORT => read(ask, trace).map(|report| Question::Report(Box::new(report))),
-        keys::RELEASE => read(ask, trace).map(Question::Release),
-        keys::SUBMIT => read(ask, trace).map(Question::Submit),
-        keys::CONTROL => read(ask, trace).map(Question::Control),
-        keys::STATUS => read(ask, trace).map(Question::Status),
+        keys::HELLO => read(ask, Question::Hello),
+        keys::ACQUIRE => read(ask, Question::Acquire),
+        keys::BEAT => read(ask, Question::Beat),
+        keys::REPORT => read(ask, |report| Question::Report(Box::new(report))),
+        keys::RELEASE => read(ask, Question::Release),
+        keys::SUBMIT => read(ask, Question::Submit),
+        keys::CONTROL => read(ask, Question::Control),
+        keys::STATUS => read(ask, Question::Status),
         other => Err(format!("`{other}` is not served here")),
     }
 }

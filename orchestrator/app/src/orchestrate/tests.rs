@@ -28,10 +28,8 @@ struct Site {
     running: JoinHandle<anyhow::Result<()>>,
 }
 
-async fn open(dir: &Path) -> Site {
-    let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
-    let (stop, shutdown) = watch::channel(Stop::Run);
-    let config = OrchestratorConfig {
+fn config(dir: &Path) -> OrchestratorConfig {
+    OrchestratorConfig {
         dir: dir.to_owned(),
         lease_ms: 15_000,
         beat_ms: 2_000,
@@ -49,18 +47,33 @@ async fn open(dir: &Path) -> Site {
         waits: true,
         metrics: None,
         rules: None,
-    };
+    }
+}
+
+async fn open(dir: &Path) -> Site {
+    open_on(Arc::new(MemoryBus::new()), config(dir)).await
+}
+
+async fn open_on(bus: Arc<dyn Bus>, config: OrchestratorConfig) -> Site {
+    let (stop, shutdown) = watch::channel(Stop::Run);
+    let blobs = LocalBlobs::new(config.dir.join("blobs"), false);
     let mut alive = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.unwrap();
     let running = tokio::spawn(serve(config, Arc::clone(&bus), shutdown));
     tokio::time::timeout(LIMIT, alive.next()).await.expect("no token").expect("no bus");
-    Site { bus, blobs: LocalBlobs::new(dir.join("blobs"), false), stop, running }
+    Site { bus, blobs, stop, running }
 }
 
 impl Site {
     async fn close(self) {
+        let bus = self.leave().await;
+        bus.close().await;
+    }
+
+    /// Ends the orchestrator; its bus stays for the next one.
+    async fn leave(self) -> Arc<dyn Bus> {
         self.stop.send_replace(Stop::Drain);
         tokio::time::timeout(LIMIT, self.running).await.expect("does not stop").unwrap().unwrap();
-        self.bus.close().await;
+        self.bus
     }
 
     async fn ask<Q: serde::Serialize + Sync, A: serde::de::DeserializeOwned>(&self, key: &str, what: &Q) -> A {
@@ -266,28 +279,79 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let site = open(dir.path()).await;
     let (_stop, shutdown) = watch::channel(Stop::Run);
-    let config = OrchestratorConfig {
-        dir: dir.path().to_owned(),
-        lease_ms: 15_000,
-        beat_ms: 2_000,
-        deadlines_ms: (120_000, 1_200_000, 60_000),
-        repairs: 3,
-        asks_again: 3,
-        author_rates: (0, 0),
-        author_budget: (0, 0),
-        cents_per_scenario: 0,
-        prices: std::collections::BTreeMap::new(),
-        circuit_percent: 0,
-        durability: socrates_store::Durability::Disk,
-        code_version: String::new(),
-        alone: false,
-        waits: true,
-        metrics: None,
-        rules: None,
-    };
     let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
-    let refused = tokio::time::timeout(LIMIT, serve(config, bus, shutdown)).await.expect("hangs");
+    let refused = tokio::time::timeout(LIMIT, serve(config(dir.path()), bus, shutdown)).await.expect("hangs");
     assert!(refused.unwrap_err().to_string().contains("in use by process"));
+    site.close().await;
+}
+
+/// Writes a proposal out of nothing.
+struct Proposes;
+
+impl socrates_kit::Stage for Proposes {
+    const STAGE: Stage = Stage::Proposal;
+
+    async fn run(&self, _job: &socrates_kit::Job) -> Result<socrates_kit::Done, socrates_kit::Failure> {
+        let output = socrates_kit::Output::text(socrates_model::Role::Proposal, "text/plain", "a proposal".to_owned());
+        Ok(socrates_kit::Done::with(vec![output]))
+    }
+}
+
+/// Submits a scenario under the same name to the store that is open, and waits until its proposal is made.
+async fn proposed(site: &Site, id: &str) {
+    assert_eq!(site.submit(id).await, Submitted::Accepted { new: 1, held: 0 });
+    let made = async {
+        loop {
+            let status = site.status().await;
+            let scenario = status.scenarios.iter().find(|one| one.id.as_str() == id).unwrap();
+            let proposal = scenario.jobs.iter().find(|job| job.key.stage == Stage::Proposal).unwrap();
+            assert!(proposal.faults.is_empty(), "{:?}", proposal.faults);
+            if proposal.state == socrates_model::JobState::Succeeded {
+                return;
+            }
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+    };
+    tokio::time::timeout(LIMIT, made).await.expect("no worker makes the proposal");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_worker_that_served_reign_3_serves_a_fresh_store_and_a_restored_one() {
+    let dirs = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let of = |dir: &Path| OrchestratorConfig { beat_ms: 20, ..config(dir) };
+    let (old, fresh) = (dirs[0].path(), dirs[1].path());
+    let mut bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+    let (stop, shutdown) = watch::channel(Stop::Run);
+    let spool = tempfile::tempdir().unwrap();
+    let settings = socrates_kit::WorkerConfig {
+        timeout: Duration::from_millis(500),
+        poll: Duration::from_millis(20),
+        ..socrates_kit::WorkerConfig::new(socrates_kit::Blobs::Bus, spool.path(), "1")
+    };
+    let worker = tokio::spawn(socrates_kit::serve(Proposes, Arc::clone(&bus), settings, shutdown));
+    for reign in 1..=3 {
+        let site = open_on(bus, of(old)).await;
+        proposed(&site, &format!("a{reign}")).await;
+        bus = site.leave().await;
+        if reign == 1 {
+            std::fs::copy(old.join("jobs.sqlite"), fresh.join("copy")).unwrap();
+        }
+    }
+    // Reign 1 of a store that knows nothing.
+    let site = open_on(bus, of(fresh)).await;
+    for id in ["a1", "a2"] {
+        proposed(&site, id).await;
+    }
+    bus = site.leave().await;
+    // Reign 2 of the first store as it was after its reign 1.
+    for end in ["", "-wal", "-shm"] {
+        drop(std::fs::remove_file(old.join(format!("jobs.sqlite{end}"))));
+    }
+    std::fs::copy(fresh.join("copy"), old.join("jobs.sqlite")).unwrap();
+    let site = open_on(bus, of(old)).await;
+    proposed(&site, "a2").await;
+    stop.send_replace(Stop::Now);
+    tokio::time::timeout(LIMIT, worker).await.expect("does not stop").unwrap().unwrap();
     site.close().await;
 }
 

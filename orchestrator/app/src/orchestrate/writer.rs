@@ -183,7 +183,7 @@ async fn publish<T: serde::Serialize + Sync>(bus: &dyn Bus, key: &str, what: &st
 
 /// Answers with what may hold grants: a worker that would misread them is told that it is too old.
 async fn grant<T: serde::Serialize>(ask: Ask, answer: Envelope<T>) -> Result<(), LinkError> {
-    let bytes = encode(&answer.for_readers_of(GRANTS_VERSION))?;
+    let bytes = encode(&answer.for_readers_of(GRANTS_VERSION).in_reign(ask.reign()))?;
     ask.reply(bytes).await
 }
 

@@ -6,7 +6,7 @@ use super::Place;
 use super::outcome::{self, Outcome};
 use crate::cards::request;
 use crate::cores;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 
 /// A run: the card and the place by their numbers in the lists, and the seed of author and run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(super) fn all(
     places: &[Place],
     items: &[Item],
     at: &mut dyn FnMut(usize, usize, &str),
-) -> Result<Vec<Outcome>, Complaint> {
+) -> Result<Vec<Outcome>, Diagnostic> {
     // Place by place, so that what is computed of a map once serves all its runs.
     let mut order: Vec<(usize, Item)> = items.iter().copied().enumerate().collect();
     order.sort_by_key(|(_, item)| (item.place, item.card, item.seed));
@@ -44,8 +44,8 @@ pub(super) fn all(
 }
 
 /// One run.
-fn one(cards: &[&'static Card], places: &[Place], item: Item) -> Result<Outcome, Complaint> {
-    let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
+fn one(cards: &[&'static Card], places: &[Place], item: Item) -> Result<Outcome, Diagnostic> {
+    let ours = |why: String| Diagnostic::input(why, "").with_code(Code::Ours);
     let (Some(card), Some(Place { location, .. })) = (cards.get(item.card), places.get(item.place)) else {
         return Err(ours("a run of a card or place that is not there".to_owned()));
     };

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use socrates_stream::ros::{self, Bag, BagFault, CONVERT};
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 
 /// What makes a folder a bag.
@@ -28,7 +28,7 @@ pub(super) enum Other {
 
 impl Other {
     /// What is told of it.
-    pub(super) fn refused(self, name: &str) -> Complaint {
+    pub(super) fn refused(self, name: &str) -> Diagnostic {
         let (what, hint) = match self {
             Self::Sqlite => ("a bag of ROS 2 in the storage `sqlite3`; `mcap` is read", CONVERT.to_owned()),
             Self::RosOne => {
@@ -41,7 +41,7 @@ impl Other {
                 format!("`zstd -d {}` unpacks it; name the .mcap file that comes of it", files::shell(Path::new(name))),
             ),
         };
-        Complaint::input(format!("`{name}` is {what}"), hint)
+        Diagnostic::input(format!("`{name}` is {what}"), hint)
     }
 }
 
@@ -53,12 +53,12 @@ pub(super) fn other(bytes: &[u8]) -> Option<Other> {
 }
 
 /// What is wrong with a bag.
-pub(super) fn refused(name: &str, why: &BagFault) -> Complaint {
-    Complaint::input(format!("`{name}`: {why}"), why.hint())
+pub(super) fn refused(name: &str, why: &BagFault) -> Diagnostic {
+    Diagnostic::input(format!("`{name}`: {why}"), why.hint())
 }
 
 /// A bag of one file, by its bytes.
-pub(super) fn of_bytes(name: &str, bytes: &[u8]) -> Result<Bag, Complaint> {
+pub(super) fn of_bytes(name: &str, bytes: &[u8]) -> Result<Bag, Diagnostic> {
     let mut bag = Bag::new();
     bag.add(name, bytes).map_err(|why| refused(name, &why))?;
     Ok(bag)
@@ -69,7 +69,7 @@ pub(super) fn of_bytes(name: &str, bytes: &[u8]) -> Result<Bag, Complaint> {
 ///
 /// # Errors
 /// A bag that is not read, and a folder of which the metadata is missing.
-pub(super) fn at(path: &Path) -> Result<Option<Bag>, Complaint> {
+pub(super) fn at(path: &Path) -> Result<Option<Bag>, Diagnostic> {
     if path.is_dir() {
         return folder(path);
     }
@@ -90,28 +90,28 @@ pub(super) fn at(path: &Path) -> Result<Option<Bag>, Complaint> {
 ///
 /// # Errors
 /// A file that cannot be read.
-pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Complaint> {
+pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Diagnostic> {
     std::fs::read(path).map_err(|why| unread(path, &why))
 }
 
-fn unread(path: &Path, why: &std::io::Error) -> Complaint {
-    Complaint::input(
+fn unread(path: &Path, why: &std::io::Error) -> Diagnostic {
+    Diagnostic::input(
         format!("cannot read `{}`: {why}", path.display()),
         "name a bundle folder, a CSV or an MCAP file, or a bag of ROS 2",
     )
 }
 
-fn add(bag: &mut Bag, path: &Path) -> Result<(), Complaint> {
+fn add(bag: &mut Bag, path: &Path) -> Result<(), Diagnostic> {
     let name = path.display().to_string();
     let file = File::open(path).map_err(|why| unread(path, &why))?;
     bag.add(&name, std::io::BufReader::new(file)).map_err(|why| refused(&name, &why))
 }
 
-fn folder(path: &Path) -> Result<Option<Bag>, Complaint> {
+fn folder(path: &Path) -> Result<Option<Bag>, Diagnostic> {
     let metadata = path.join(METADATA);
     if !metadata.is_file() {
         return match recording(path) {
-            Some(file) => Err(Complaint::input(
+            Some(file) => Err(Diagnostic::input(
                 format!("`{}` holds `{}` and no {METADATA}", path.display(), file.display()),
                 format!("`ros2 bag reindex {}` writes it; one .mcap file can be named as well", files::shell(path)),
             )),
@@ -126,7 +126,7 @@ fn folder(path: &Path) -> Result<Option<Bag>, Complaint> {
         let beside = Path::new(&file).file_name().map(|file| path.join(file));
         let found = [Some(path.join(&file)), beside].into_iter().flatten().find(|path| path.is_file());
         let Some(found) = found else {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{name}` names the file `{file}`, which is not there"),
                 format!(
                     "copy the whole folder of the bag, or write its metadata anew: `ros2 bag reindex {}`",

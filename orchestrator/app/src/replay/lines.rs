@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use socrates_stream::csv::Table;
 
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// A hole between two lines of one agent longer than this is told, s.
 const HOLE_SECS: f64 = 1.0;
@@ -66,7 +66,7 @@ struct Fix {
 ///
 /// # Errors
 /// Somebody who is at two places at one time: no reading of that is right.
-pub(super) fn doubts(table: &Table, by: FoundBy) -> Result<Vec<String>, Complaint> {
+pub(super) fn doubts(table: &Table, by: FoundBy) -> Result<Vec<String>, Diagnostic> {
     let Some((agents, widest)) = read(table) else { return Ok(Vec::new()) };
     let mut found = Vec::new();
     for (id, fixes) in &agents {
@@ -83,7 +83,7 @@ pub(super) fn doubts(table: &Table, by: FoundBy) -> Result<Vec<String>, Complain
         let pairs = || order.iter().zip(order.iter().skip(1));
         let twice: Vec<(&Fix, &Fix)> = pairs().filter(|(a, b)| b.t <= a.t).collect();
         if let Some((a, b)) = twice.iter().find(|(a, b)| (a.x - b.x).hypot(a.y - b.y) > SAME_M) {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{id}` is at two places at {} s: {} and {}", a.t, by.placed(a), by.placed(b)),
                 "each person needs an id of its own: `human_1`, `human_2`, …; the robot is `robot` or 0",
             ));

@@ -12,32 +12,38 @@ use socrates_stream::{StreamError, mcap};
 use super::bags;
 use super::lines::{self, FoundBy};
 use crate::bundle;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Radii that are believed, m.
 const RADII_M: std::ops::RangeInclusive<f64> = 0.05..=2.0;
 
 /// What is known of a recording beside its tracks.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Known {
-    pub(crate) location: Option<Location>,
-    pub(crate) goal: Option<Point>,
-    pub(crate) radius_m: Option<f64>,
-    pub(crate) speed_mps: Option<f64>,
-    pub(crate) groups: Vec<Group>,
+pub struct Known {
+    /// Where it is.
+    pub location: Option<Location>,
+    /// Where the robot wants to go.
+    pub goal: Option<Point>,
+    /// Radius of the robot, m.
+    pub radius_m: Option<f64>,
+    /// Preferred speed of the robot, m/s.
+    pub speed_mps: Option<f64>,
+    /// People who belong together.
+    pub groups: Vec<Group>,
     /// The id of the robot in the file, where it is neither `robot` nor 0; in a bag its topic or frame.
-    pub(crate) robot: Option<String>,
+    pub robot: Option<String>,
     /// The topic of the people in a bag.
-    pub(crate) people: Option<String>,
+    pub people: Option<String>,
     /// Which run of a table of several.
-    pub(crate) run: RunChoice,
+    pub run: RunChoice,
 }
 
 /// A recording with its report.
 #[derive(Debug)]
-pub(crate) struct Scored {
+pub struct Scored {
     pub(crate) recording: Recording,
-    pub(crate) report: Report,
+    /// The report.
+    pub report: Report,
     /// Where the robot wants to go, as far as it is known.
     pub(crate) goal: Option<Point>,
     /// What looks wrong, what was mended, and what was assumed, in sentences.
@@ -67,7 +73,7 @@ struct Read {
 ///
 /// # Errors
 /// What cannot be read, with what would be.
-pub(crate) fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Complaint> {
+pub fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Diagnostic> {
     let name = path.display().to_string();
     if bundle::is_bundle(path) {
         return Ok(None);
@@ -83,7 +89,7 @@ pub(crate) fn at(path: &Path, known: &Known) -> Result<Option<Scored>, Complaint
 ///
 /// # Errors
 /// What cannot be read, with what would be.
-pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, Complaint> {
+pub fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, Diagnostic> {
     let mut told = Vec::new();
     let is_mcap = mcap::begins(bytes) || (bytes.is_empty() && name.ends_with(".mcap"));
     if Bag::begins(bytes) {
@@ -104,9 +110,9 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
 ///
 /// # Errors
 /// What is missing in it, with what mends it.
-fn score_bag(name: &str, bag: Bag, known: &Known) -> Result<Scored, Complaint> {
+fn score_bag(name: &str, bag: Bag, known: &Known) -> Result<Scored, Diagnostic> {
     if known.run != RunChoice::default() {
-        return Err(Complaint::input(format!("`{name}` holds one run"), "--planner and --seed are for tables"));
+        return Err(Diagnostic::input(format!("`{name}` holds one run"), "--planner and --seed are for tables"));
     }
     let choice = Choice { robot: known.robot.clone(), people: known.people.clone() };
     let found = bag.tracks(&choice).map_err(|why| bags::refused(name, &why))?;
@@ -126,12 +132,12 @@ fn score_bag(name: &str, bag: Bag, known: &Known) -> Result<Scored, Complaint> {
     judged(name, read, known, told)
 }
 
-fn judged(name: &str, read: Read, known: &Known, mut told: Vec<String>) -> Result<Scored, Complaint> {
+fn judged(name: &str, read: Read, known: &Known, mut told: Vec<String>) -> Result<Scored, Diagnostic> {
     let Read { mut recording, goal, groups, named, measured, table } = read;
     let goal = known.goal.or(goal);
     let groups = if known.groups.is_empty() { groups } else { members(&known.groups, &recording, &named, &mut told) };
     if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("the robot's radius cannot be {radius} m"),
             format!("--radius takes meters from {} to {}", RADII_M.start(), RADII_M.end()),
         ));
@@ -142,7 +148,7 @@ fn judged(name: &str, read: Read, known: &Known, mut told: Vec<String>) -> Resul
     }
     told.extend(socrates_scoring::doubts(&recording, known.location.as_ref()));
     let tracks = socrates_scoring::Tracks::read(&recording).map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{name}`: {why}"),
             "a recording has at least two moments, finite numbers, rising times and one track for each agent",
         )
@@ -214,7 +220,7 @@ fn assumed(known: &Known, recording: &Recording, measured: &BTreeSet<AgentId>) -
 }
 
 /// A recording of ours; nothing for one of others in which there may be messages of ROS 2.
-fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Option<Read>, Complaint> {
+fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Option<Read>, Diagnostic> {
     let rest = match mcap::read_rest(bytes) {
         // A program that writes MCAP may leave out the profile of ROS 2.
         Err(StreamError::Foreign { .. }) if bags::of_bytes(name, bytes).is_ok_and(|bag| bag.is_ros()) => {
@@ -223,7 +229,7 @@ fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Resu
         rest => rest,
     };
     if known.robot.is_some() || known.people.is_some() || known.run != RunChoice::default() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{name}` holds one run and names its robot"),
             "--robot is for tables and bags, --people for bags, --planner and --seed for tables",
         ));
@@ -242,7 +248,7 @@ fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Resu
                 "the MCAP file is damaged or was cut off: copy it again, or make the run again with `socrates simulate BUNDLE --out FOLDER`"
             }
         };
-        Complaint::input(format!("`{name}`: {why}"), hint)
+        Diagnostic::input(format!("`{name}`: {why}"), hint)
     })?;
     if let Some(why) = rest.cut {
         let last =
@@ -254,10 +260,10 @@ fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Resu
     Ok(Some(Read { recording, goal: None, groups, named, measured: None, table: None }))
 }
 
-fn table(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
-    let bad = |why: String| Complaint::input(format!("`{name}`: {why}"), TABLES);
+fn table(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Diagnostic> {
+    let bad = |why: String| Diagnostic::input(format!("`{name}`: {why}"), TABLES);
     if known.people.is_some() {
-        return Err(Complaint::input(format!("`{name}` is no bag of ROS 2"), "--people is for bags"));
+        return Err(Diagnostic::input(format!("`{name}` is no bag of ROS 2"), "--people is for bags"));
     }
     let text = std::str::from_utf8(bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
     let mut table = Table::read(text).map_err(|why| bad(why.to_string()))?;
@@ -273,13 +279,13 @@ fn tabled(
     by: FoundBy,
     robot: Option<&str>,
     told: &mut Vec<String>,
-) -> Result<Read, Complaint> {
-    let bad = |why: StreamError| Complaint::input(format!("`{name}`: {why}"), TABLES);
+) -> Result<Read, Diagnostic> {
+    let bad = |why: StreamError| Diagnostic::input(format!("`{name}`: {why}"), TABLES);
     // What looks wrong is reported with the ids of the file.
     let of_file = table.clone();
     let named = socrates_stream::csv::named(&mut table, robot).map_err(bad)?;
     let mut recording = socrates_stream::csv::read_table(&table).map_err(bad)?;
-    let with_name = |why: Complaint| Complaint { what: format!("`{name}`: {}", why.what), ..why };
+    let with_name = |why: Diagnostic| Diagnostic { what: format!("`{name}`: {}", why.what), ..why };
     told.extend(lines::doubts(&of_file, by).map_err(with_name)?);
     for info in &mut recording.header.agents {
         if let Some(id) = named.names.get(&info.agent) {
@@ -359,7 +365,7 @@ pub fn group(text: &str) -> Result<Group, String> {
 
 /// Ids of people who belong together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Group(pub(crate) Vec<String>);
+pub struct Group(pub Vec<String>);
 
 #[cfg(test)]
 mod tests;

@@ -23,7 +23,7 @@ use socrates_study::rating::Film as Declared;
 use super::scenes::{self, Scene};
 use super::{bad, design, name};
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
 use crate::output::Printer;
 use crate::progress::Progress;
@@ -78,11 +78,11 @@ pub(super) struct Lock {
 }
 
 /// The lock of a kit.
-pub(super) fn lock(kit: &Path) -> Result<Lock, Complaint> {
+pub(super) fn lock(kit: &Path) -> Result<Lock, Diagnostic> {
     let path = kit.join(LOCK);
     let text = files::text(&path, 64 << 20, "`socrates study build` makes a kit")?;
     serde_json::from_str(&text).map_err(|why| {
-        Complaint::input(format!("`{}` is no lock of a kit: {why}", path.display()), "build the kit again")
+        Diagnostic::input(format!("`{}` is no lock of a kit: {why}", path.display()), "build the kit again")
     })
 }
 
@@ -106,9 +106,9 @@ struct Kit<'k> {
 
 impl Kit<'_> {
     /// Writes a text that participants can reach; one that names a planner is refused.
-    fn text(&mut self, path: &str, text: &str) -> Result<Digest, Complaint> {
+    fn text(&mut self, path: &str, text: &str) -> Result<Digest, Diagnostic> {
         if let Some(planner) = self.planners.iter().find(|planner| names(text, planner)) {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{path}` of the kit would tell participants of the planner `{planner}`"),
                 "take its name out of title, consent, instructions, contexts and items of the study",
             ));
@@ -116,7 +116,7 @@ impl Kit<'_> {
         self.bytes(path, text.as_bytes())
     }
 
-    fn bytes(&mut self, path: &str, bytes: &[u8]) -> Result<Digest, Complaint> {
+    fn bytes(&mut self, path: &str, bytes: &[u8]) -> Result<Digest, Diagnostic> {
         files::write(&self.root.join(path), bytes)?;
         let digest = Digest::of(bytes);
         self.files.insert(path.to_owned(), digest);
@@ -135,17 +135,17 @@ fn names(text: &str, planner: &str) -> bool {
 }
 
 /// Does `study build`.
-pub fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<(), Complaint> {
+pub fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<(), Diagnostic> {
     let design = design(&options.design)?;
     let out = &options.out;
     if out.exists() && !out.join(LOCK).exists() && std::fs::read_dir(out).is_ok_and(|mut dir| dir.next().is_some()) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` holds something that is no kit", out.display()),
             "--out names another folder",
         ));
     }
     if out.join(LOCK).exists() && lock(out)?.study != design.digest {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` is the kit of another study file, or of this one before it was changed", out.display()),
             "--out names another folder; people may already answer this kit",
         ));
@@ -178,7 +178,7 @@ pub fn build(talk: &Printer, config: &Config, options: &BuildOptions) -> Result<
     }
     let lock = Lock { format: 1, study: design.digest.clone(), files: kit.files };
     let lock = serde_json::to_string_pretty(&lock)
-        .map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+        .map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))?;
     files::write(&out.join(LOCK), lock.as_bytes())?;
     let secret = options.design.with_extension(SECRET);
     files::write(&secret, manifest(&made).as_bytes())?;
@@ -204,11 +204,11 @@ fn alike(made: &[Made]) -> Vec<String> {
         .collect()
 }
 
-fn read(design: &Design, file: &Path) -> Result<BTreeMap<String, Scene>, Complaint> {
+fn read(design: &Design, file: &Path) -> Result<BTreeMap<String, Scene>, Diagnostic> {
     let mut scenes = BTreeMap::new();
     for scenario in &design.scenarios {
         let Some(source) = design.sources.iter().find(|source| source.name == *scenario) else {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{}`: nothing says where the films of `{scenario}` come from", name(file)),
                 "add `[[scenario]]` with name and bundles; `socrates study new` writes them",
             ));
@@ -218,7 +218,7 @@ fn read(design: &Design, file: &Path) -> Result<BTreeMap<String, Scene>, Complai
         let mut planners: Vec<PlannerName> = Vec::new();
         for film in of() {
             let planner = PlannerName::new(&film.planner).map_err(|why| {
-                Complaint::input(format!("film `{}`: {why}", film.id), "`socrates planners` lists their names")
+                Diagnostic::input(format!("film `{}`: {why}", film.id), "`socrates planners` lists their names")
             })?;
             if !planners.contains(&planner) {
                 planners.push(planner);
@@ -239,8 +239,8 @@ fn filmed(
     film: &Declared,
     kit: &mut Kit<'_>,
     ffmpeg: Option<&Path>,
-) -> Result<Made, Complaint> {
-    let missing = || Complaint::input(format!("film `{}` has no run", film.id), "`socrates study new` writes films");
+) -> Result<Made, Diagnostic> {
+    let missing = || Diagnostic::input(format!("film `{}` has no run", film.id), "`socrates study new` writes films");
     let scene = scenes.get(&film.scenario).ok_or_else(missing)?;
     let source = design.sources.iter().find(|source| source.name == film.scenario).ok_or_else(missing)?;
     let (dir, recording, _) = scene.run(&film.planner, film.seed).ok_or_else(missing)?;
@@ -253,7 +253,7 @@ fn filmed(
     let drawn = Film::new(&scene.bundle.location, "", &all, &shown, film_options).map_err(wrong)?;
     let strip = drawn.strip(PAGE_FPS);
     if let Some(length_s) = film.length_s.filter(|length_s| (length_s - strip.length_s).abs() > LENGTH_S) {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("film `{}` lasts {:.1} s, and the study says `length_s = {length_s}`", film.id, strip.length_s),
             format!("write `length_s = {:.1}` for all films of `{}`", strip.length_s, film.scenario),
         ));
@@ -313,7 +313,7 @@ fn codebook(design: &Design) -> String {
 }
 
 /// The survey for programs that show films from elsewhere.
-fn formats(kit: &mut Kit<'_>, design: &Design, media: &Media) -> Result<(), Complaint> {
+fn formats(kit: &mut Kit<'_>, design: &Design, media: &Media) -> Result<(), Diagnostic> {
     let wrong = |why| bad(&why);
     let found = qsf::qsf(design, media).map_err(wrong)?;
     kit.text("qualtrics.qsf", &found.survey)?;

@@ -8,9 +8,9 @@ use socrates_study::correlate::{Correlations, Metrics, Wanted, correlate as corr
 use socrates_study::design::Design;
 use socrates_study::exclude::excluded;
 
-use super::{bad, design, rated};
+use super::{bad, design, rated, warn_of};
 use crate::bundle;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::files;
 use crate::output::Printer;
 
@@ -32,12 +32,12 @@ pub struct CorrelateOptions {
 }
 
 /// Does `study correlate`.
-pub fn correlate(talk: &Printer, options: &CorrelateOptions) -> Result<(), Complaint> {
+pub fn correlate(talk: &Printer, options: &CorrelateOptions) -> Result<(), Diagnostic> {
     let design = design(&options.design)?;
     let wanted = if options.search {
         Wanted::Search { hold_out: options.hold_out.clone() }
     } else if options.metrics.is_empty() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "no metric is named, and the best of all would fit by chance",
             "`--metrics human_distance_min,space_compliance` declares those that you expect something of; `--search --hold-out SCENARIO` looks for one",
         ));
@@ -57,15 +57,16 @@ pub fn correlate(talk: &Printer, options: &CorrelateOptions) -> Result<(), Compl
     let out = excluded(&ratings, &design);
     let found = correlated(&ratings, &design, &out, &metrics, &wanted).map_err(|why| bad(&why))?;
     let whole = serde_json::to_string_pretty(&found)
-        .map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+        .map_err(|why| Diagnostic::input(why.to_string(), "").with_code(Code::Ours))?;
     for (file, text) in
         [("correlations.csv", found.csv()), ("correlations.json", whole), ("correlations.txt", found.words())]
     {
         files::write(&options.out.join(file), text.as_bytes())?;
     }
+    warn_of(talk, found.origin);
     tell(talk, &found);
     talk.line(&format!("table      {}", options.out.join("correlations.csv").display()));
-    talk.result(&json!({ "out": options.out, "ceilings": found.ceilings, "correlations": found.correlations }));
+    talk.result(&json!({ "out": options.out, "ceilings": found.ceilings, "correlations": found.correlations, "simulated": found.origin }));
     Ok(())
 }
 
@@ -96,7 +97,7 @@ fn tell(talk: &Printer, found: &Correlations) {
 }
 
 /// Metrics of the runs that films show; one without a value is missing.
-fn metrics(design: &Design, file: &Path) -> Result<Metrics, Complaint> {
+fn metrics(design: &Design, file: &Path) -> Result<Metrics, Diagnostic> {
     let mut found = Metrics::new();
     for source in &design.sources {
         for dir in &source.bundles {
@@ -113,7 +114,7 @@ fn metrics(design: &Design, file: &Path) -> Result<Metrics, Complaint> {
         }
     }
     if found.is_empty() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "the study does not say which runs its films show",
             "add `[[scenario]]` with name and bundles; `socrates study new` writes them",
         ));

@@ -9,7 +9,7 @@ use socrates_study::kit::setup::{ABOVE, CONSENT};
 
 use super::scenes::{self, Scene};
 use super::{bad, name};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::output::Printer;
 use crate::words::plural;
@@ -46,9 +46,9 @@ pub struct NewOptions {
 }
 
 /// Does `study new`.
-pub fn new(talk: &Printer, options: &NewOptions) -> Result<(), Complaint> {
+pub fn new(talk: &Printer, options: &NewOptions) -> Result<(), Diagnostic> {
     if options.out.exists() && !options.force {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("`{}` is there already", options.out.display()),
             "--out names another file; --force replaces it",
         ));
@@ -82,20 +82,20 @@ pub fn new(talk: &Printer, options: &NewOptions) -> Result<(), Complaint> {
 fn chosen(
     options: &NewOptions,
     dirs: &std::collections::BTreeMap<String, Vec<PathBuf>>,
-) -> Result<(Vec<PlannerName>, Vec<u64>), Complaint> {
+) -> Result<(Vec<PlannerName>, Vec<u64>), Diagnostic> {
     let (common, seeds) = scenes::common(dirs);
     let planners = if options.planners.is_empty() { common } else { options.planners.clone() };
     if planners.len() < 2 {
         let found: Vec<&str> = planners.iter().map(PlannerName::as_str).collect();
         let found = if found.is_empty() { "none".to_owned() } else { found.join(", ") };
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!("films of at least two planners are compared, and the scenarios have in common: {found}"),
             "run the same requests with several: `socrates compare REQUEST --planner A,B,C`, or name them with --planner",
         ));
     }
     let seeds = if options.seeds.is_empty() { seeds.into_iter().take(1).collect() } else { options.seeds.clone() };
     if seeds.is_empty() {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             "the scenarios have no seed in common with which all planners were run",
             "run them with the same: `socrates compare REQUESTS --planner A,B,C --seeds 1..3`",
         ));
@@ -153,7 +153,7 @@ fn written(
     seeds: &[u64],
     scenes: &[Scene],
     people: usize,
-) -> Result<String, Complaint> {
+) -> Result<String, Diagnostic> {
     let view = options.from.map_or_else(|| ABOVE.to_owned(), |who| who.to_string());
     let mut text = format!(
         "# A study of people who rate films of robots; docs/study.md explains every key.\n\

@@ -8,7 +8,7 @@ use socrates_model::{HumanId, PlannerName, Recording, Report, Run, Verdict};
 use socrates_study::kit::setup::View;
 
 use crate::bundle::{self, Bundle};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::labels;
 
 /// Seconds of a film that stand still before and behind the run.
@@ -28,7 +28,7 @@ pub(super) struct Scene {
 }
 
 /// Bundles by the scenario that they hold.
-pub(super) fn by_scenario(what: &[PathBuf]) -> Result<BTreeMap<String, Vec<PathBuf>>, Complaint> {
+pub(super) fn by_scenario(what: &[PathBuf]) -> Result<BTreeMap<String, Vec<PathBuf>>, Diagnostic> {
     let mut found: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for dir in labels::folders(what)? {
         let manifest = bundle::manifest(&dir).ok_or_else(|| crate::batch::none(&dir))?;
@@ -48,7 +48,7 @@ impl Scene {
         dirs: &[PathBuf],
         planners: &[PlannerName],
         seeds: &[u64],
-    ) -> Result<Self, Complaint> {
+    ) -> Result<Self, Diagnostic> {
         let mut first: Option<(PathBuf, Bundle)> = None;
         let mut runs: Vec<Lying> = Vec::new();
         let mut references = Vec::new();
@@ -60,7 +60,7 @@ impl Scene {
                 // The same run in two bundles is one run.
                 let known = |(_, _, other): &&Lying| other.planner == report.planner && other.seed == report.seed;
                 if let Some((other, ..)) = runs.iter().find(known) {
-                    return Err(Complaint::input(
+                    return Err(Diagnostic::input(
                         format!(
                             "`{name}` has the run `{}-{}` twice: in `{}` and `{}`",
                             report.planner,
@@ -79,7 +79,7 @@ impl Scene {
             }
         }
         let Some((_, bundle)) = first else {
-            return Err(Complaint::input(format!("`{name}` has no bundle"), "name a bundle with its runs"));
+            return Err(Diagnostic::input(format!("`{name}` has no bundle"), "name a bundle with its runs"));
         };
         let scene = Self { name: name.to_owned(), bundle, runs };
         scene.complete(planners, seeds)?;
@@ -93,7 +93,7 @@ impl Scene {
         self.runs.iter().find(|(_, _, report)| report.planner.as_str() == planner && report.seed == seed)
     }
 
-    fn complete(&self, planners: &[PlannerName], seeds: &[u64]) -> Result<(), Complaint> {
+    fn complete(&self, planners: &[PlannerName], seeds: &[u64]) -> Result<(), Diagnostic> {
         for planner in planners {
             for seed in seeds {
                 if self.run(planner.as_str(), *seed).is_none() {
@@ -102,7 +102,7 @@ impl Scene {
                         .iter()
                         .map(|(_, _, report)| Run { planner: report.planner.clone(), seed: report.seed }.to_string())
                         .collect();
-                    return Err(Complaint::input(
+                    return Err(Diagnostic::input(
                         format!(
                             "`{}` has no run of `{planner}` with seed {seed}: films of other seeds show other people",
                             self.name
@@ -119,11 +119,11 @@ impl Scene {
         Ok(())
     }
 
-    fn thresholds(&self) -> Result<(), Complaint> {
+    fn thresholds(&self) -> Result<(), Diagnostic> {
         let Some((_, _, first)) = self.runs.first() else { return Ok(()) };
         let other = self.runs.iter().find(|(_, _, report)| report.thresholds != first.thresholds);
         let Some((_, _, other)) = other else { return Ok(()) };
-        Err(Complaint::input(
+        Err(Diagnostic::input(
             format!(
                 "`{}`: `{}-{}` was scored with the thresholds `{}`, `{}-{}` with `{}`: their figures do not mean the same",
                 self.name, first.planner, first.seed, first.thresholds, other.planner, other.seed, other.thresholds
@@ -133,7 +133,7 @@ impl Scene {
     }
 
     /// What people are told about the scenario must have happened with some robot, for each seed; and no run may be broken.
-    fn realised(&self, seeds: &[u64], references: &[Report]) -> Result<(), Complaint> {
+    fn realised(&self, seeds: &[u64], references: &[Report]) -> Result<(), Diagnostic> {
         for seed in seeds {
             let of = |report: &&Report| report.seed == *seed;
             let own: Vec<&Report> = self.runs.iter().map(|(_, _, report)| report).filter(of).collect();
@@ -147,26 +147,26 @@ impl Scene {
                         format!("{}-{}: {} ({})", report.planner, report.seed, report.verdict, report.verdict_text)
                     })
                     .collect();
-                let mut complaint = Complaint::input(
+                let mut diagnostic = Diagnostic::input(
                     format!(
                         "`{}` was not realised with seed {seed}: people would be told of what they do not see",
                         self.name
                     ),
                     "leave the scenario out, or take a seed with which it was: `--seeds` names it",
                 );
-                complaint.causes = told;
-                return Err(complaint);
+                diagnostic.causes = told;
+                return Err(diagnostic);
             }
             if let Some(broken) = own.iter().find(|report| report.verdict == Verdict::Invalid) {
-                let mut complaint = Complaint::input(
+                let mut diagnostic = Diagnostic::input(
                     format!(
                         "`{}`: the run `{}-{seed}` is invalid, so nobody knows what it shows",
                         self.name, broken.planner
                     ),
                     "take another seed for all planners: `--seeds` names it",
                 );
-                complaint.causes = vec![broken.verdict_text.clone()];
-                return Err(complaint);
+                diagnostic.causes = vec![broken.verdict_text.clone()];
+                return Err(diagnostic);
             }
         }
         Ok(())
@@ -207,7 +207,7 @@ impl Scene {
 }
 
 /// Refuses bundles that differ in anything but their runs.
-fn alike(name: &str, (a, first): (&Path, &Bundle), (b, other): (&Path, &Bundle)) -> Result<(), Complaint> {
+fn alike(name: &str, (a, first): (&Path, &Bundle), (b, other): (&Path, &Bundle)) -> Result<(), Diagnostic> {
     let parts = [
         ("map", first.location == other.location),
         ("proposal", first.proposal == other.proposal),
@@ -215,7 +215,7 @@ fn alike(name: &str, (a, first): (&Path, &Bundle), (b, other): (&Path, &Bundle))
         ("behaviors of people", first.behaviors == other.behaviors),
     ];
     let Some((what, _)) = parts.iter().find(|(_, same)| !same) else { return Ok(()) };
-    Err(Complaint::input(
+    Err(Diagnostic::input(
         format!(
             "`{name}` is not the same in `{}` and `{}`: the {what} differ, so films of both cannot be compared",
             a.display(),

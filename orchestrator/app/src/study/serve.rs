@@ -29,7 +29,7 @@ use tokio::time::Instant;
 
 use super::build::{FILMS, SURVEY, lock};
 use super::{MAX_ANSWERS, bad, design, key, name};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::files;
 use crate::loopback::{self, Loopback, body, refused, told};
 use crate::output::Printer;
@@ -89,10 +89,10 @@ struct Shared {
 }
 
 /// Does `study serve`.
-pub async fn serve(talk: &Printer, options: &ServeOptions) -> Result<(), Complaint> {
+pub async fn serve(talk: &Printer, options: &ServeOptions) -> Result<(), Diagnostic> {
     let design = design(&options.design)?;
     if lock(&options.kit)?.study != design.digest {
-        return Err(Complaint::input(
+        return Err(Diagnostic::input(
             format!(
                 "`{}` is not the kit of `{}`: the study file was changed since",
                 options.kit.display(),
@@ -132,10 +132,10 @@ pub async fn serve(talk: &Printer, options: &ServeOptions) -> Result<(), Complai
 }
 
 /// Opens the book. A last line that was cut off was never acknowledged: it is put aside.
-fn open(talk: &Printer, design: &Design, folder: &Path) -> Result<Book, Complaint> {
+fn open(talk: &Printer, design: &Design, folder: &Path) -> Result<Book, Diagnostic> {
     let path = folder.join(BOOK);
     let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--answers names another folder")
+        Diagnostic::input(format!("cannot write `{}`: {why}", path.display()), "--answers names another folder")
     };
     std::fs::create_dir_all(folder).map_err(cannot)?;
     let mut text = if path.exists() { files::text(&path, MAX_ANSWERS, "the answers so far")? } else { String::new() };
@@ -153,7 +153,7 @@ fn open(talk: &Printer, design: &Design, folder: &Path) -> Result<Book, Complain
     let file = File::options().append(true).create(true).open(&path).map_err(cannot)?;
     // One program at a time writes it.
     file.try_lock().map_err(|why| {
-        Complaint::input(
+        Diagnostic::input(
             format!("`{}` is in use: {why}", path.display()),
             "another `socrates study serve` has it; --answers names another folder",
         )

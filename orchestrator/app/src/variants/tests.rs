@@ -4,13 +4,19 @@ use socrates_model::Breadth;
 
 use super::*;
 use crate::config::Config;
+use crate::prepare::prepare_text;
 
 /// Draws of a count that leaves nothing out: as many as a test may take.
 const ALL: usize = 2048;
 
 fn shipped(name: &str, variants: u32) -> Prepared {
-    let all = crate::mutations::shipped(&Config::load(None, std::iter::empty(), &[]).unwrap()).unwrap();
-    let mut one = all.into_iter().find(|one| one.name == name).unwrap();
+    let config = Config::load(None, std::iter::empty(), &[]).unwrap();
+    let (location, stem) = name.split_once('-').unwrap();
+    let (_, text) = socrates_maps::shipped::requests(location)
+        .into_iter()
+        .find(|(file, _)| file.trim_end_matches(".toml") == stem)
+        .unwrap();
+    let mut one = prepare_text(name, text, name, std::path::Path::new("."), None, &config).unwrap();
     one.request.run.variants = variants;
     one.request.run.breadth = Breadth::Wide;
     one

@@ -23,7 +23,7 @@ use tokio::task::JoinHandle;
 use crate::batch;
 use crate::bundle::{self, Manifest};
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 use crate::keys;
 use crate::layout;
 use crate::process::client;
@@ -45,7 +45,7 @@ pub(super) enum Place {
 
 impl Place {
     /// Reads what a person named.
-    pub(super) fn of(what: &str) -> Result<Self, Complaint> {
+    pub(super) fn of(what: &str) -> Result<Self, Diagnostic> {
         let path = Path::new(what);
         if path.is_dir() || bundle::is_bundle(path) {
             return Ok(Self::Folder(path.to_path_buf()));
@@ -53,7 +53,7 @@ impl Place {
         if what.contains('/') && endpoint(what).is_some() {
             return Ok(Self::Endpoint(what.to_owned()));
         }
-        Err(Complaint::input(
+        Err(Diagnostic::input(
             format!("`{what}` is no folder"),
             "name the folder of a run, a bundle, a folder of bundles, or an endpoint such as tcp/127.0.0.1:7447@main",
         ))
@@ -74,7 +74,7 @@ impl Place {
     }
 
     /// Whether the keys that it needs are there.
-    pub(super) fn check(&self, config: &Config) -> Result<(), Complaint> {
+    pub(super) fn check(&self, config: &Config) -> Result<(), Diagnostic> {
         let Self::Endpoint(what) = self else { return Ok(()) };
         let Some((endpoint, namespace)) = endpoint(what) else { return Ok(()) };
         let keys = keys::of(config, Role::Viewer, &endpoint)?;

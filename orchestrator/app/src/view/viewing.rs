@@ -12,7 +12,7 @@ use tokio::task::JoinHandle;
 
 use crate::child;
 use crate::config::Config;
-use crate::exit::{Code, Complaint};
+use crate::exit::{Code, Diagnostic};
 use crate::output::Printer;
 use crate::signals::Signals;
 
@@ -36,7 +36,7 @@ struct Start {
 }
 
 impl Start {
-    fn child(&self, listen: Option<&str>) -> Result<Child, Complaint> {
+    fn child(&self, listen: Option<&str>) -> Result<Child, Diagnostic> {
         child::command(&self.program)
             .args(&self.args)
             .args(listen.into_iter().flat_map(|address| ["--listen", address]))
@@ -45,8 +45,8 @@ impl Start {
     }
 }
 
-fn ours(what: &str) -> Complaint {
-    Complaint::input(what, "`socrates doctor` checks this machine; without --view the run goes on")
+fn ours(what: &str) -> Diagnostic {
+    Diagnostic::input(what, "`socrates doctor` checks this machine; without --view the run goes on")
         .with_code(Code::Ours)
 }
 
@@ -59,7 +59,7 @@ async fn said(child: &mut Child) -> Option<Value> {
 
 impl Viewing {
     /// Starts it for a folder and says where viewers find it.
-    pub(crate) async fn begin(talk: &Printer, config: &Config, folder: &Path) -> Result<Self, Complaint> {
+    pub(crate) async fn begin(talk: &Printer, config: &Config, folder: &Path) -> Result<Self, Diagnostic> {
         let mut args = vec!["view".to_owned(), folder.display().to_string(), "--tied".to_owned()];
         args.extend(["--format".to_owned(), "json".to_owned()]);
         args.extend_from_slice(config.passed_on());
@@ -68,7 +68,7 @@ impl Viewing {
         let told = said(&mut child).await.ok_or_else(|| ours("the process for viewers did not say where it is"))?;
         let text = |key: &str| told.get(key).and_then(Value::as_str).map(str::to_owned);
         let (Some(page), Some(address)) = (text("view"), text("address")) else {
-            let why = Complaint::of_object(&told).map_or_else(|| told.to_string(), |why| why.to_string());
+            let why = Diagnostic::of_object(&told).map_or_else(|| told.to_string(), |why| why.to_string());
             return Err(ours(&why));
         };
         talk.line(&format!("view       {page}"));
@@ -80,7 +80,7 @@ impl Viewing {
     }
 
     /// Shows what was made until somebody ends it.
-    pub(crate) async fn stay(self, talk: &Printer) -> Result<(), Complaint> {
+    pub(crate) async fn stay(self, talk: &Printer) -> Result<(), Diagnostic> {
         talk.line("view       stays until Ctrl-C");
         let mut signals = Signals::listen()?;
         let _asked_to_leave = signals.come().await;

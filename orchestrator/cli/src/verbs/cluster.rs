@@ -7,7 +7,7 @@ use socrates_app::cluster::{self, SubmitOptions};
 use socrates_app::cluster_work::{self, WorkOptions};
 use socrates_app::collect::{self, CollectOptions};
 use socrates_app::config::Config;
-use socrates_app::exit::Complaint;
+use socrates_app::exit::Diagnostic;
 use socrates_app::keep::Keep;
 use socrates_app::output::Printer;
 use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
@@ -114,10 +114,10 @@ struct Submit {
 
 impl Submit {
     /// What the batch may take.
-    fn limits(&self) -> Result<Limits, Complaint> {
+    fn limits(&self) -> Result<Limits, Diagnostic> {
         let hours = self.max_hours.unwrap_or(0.0);
         if !(0.0..=MOST_HOURS).contains(&hours) || self.max_hours == Some(0.0) {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`--max-hours {hours}` is no time that a batch may run"),
                 format!("allowed: more than 0, at most {MOST_HOURS} hours"),
             ));
@@ -125,7 +125,7 @@ impl Submit {
         for (option, value) in [("--max-tokens", self.max_tokens), ("--max-cents", self.max_cents)] {
             if value == Some(0) {
                 let hint = "allowed: 1 or more; without the option there is no limit";
-                return Err(Complaint::input(format!("`{option} 0` lets nothing be made"), hint));
+                return Err(Diagnostic::input(format!("`{option} 0` lets nothing be made"), hint));
             }
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
@@ -274,15 +274,20 @@ pub(crate) struct Worker {
     /// File in which its log is kept, as JSON lines; see `socrates config log`.
     #[arg(long, value_name = "FILE")]
     log_file: Option<PathBuf>,
+    /// Let jobs name folders of recordings (`record:`, `replay:`, `cassette:`); for jobs of the user of this process alone.
+    #[arg(long, hide = true)]
+    own_jobs: bool,
     #[command(flatten)]
     keys: Keys,
 }
 
 impl Worker {
     pub(super) async fn act(&self, config: &Config) -> Outcome {
-        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject, log_file, keys } = self.clone();
+        let Self { stage, connect, namespace, blobs, spool, tied, durable, inject, log_file, own_jobs, keys } =
+            self.clone();
         let config = &keys.over(config)?;
-        let options = WorkerOptions { stage, connect, namespace, blobs, spool, tied, durable, inject, log_file };
+        let options =
+            WorkerOptions { stage, connect, namespace, blobs, spool, tied, durable, inject, log_file, own_jobs };
         done(process::worker(config, &options).await)
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use socrates_app::exit::Complaint;
+use socrates_app::exit::Diagnostic;
 use socrates_app::explain_job::{self, Where};
 use socrates_app::output::Printer;
 use socrates_app::{config, explain};
@@ -45,7 +45,7 @@ impl Explain {
         };
         let [job] = &code[..] else {
             let named = code.join(" ");
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 format!("`{named}` names no single job"),
                 "name one, such as s-1/paths; `socrates status --all` lists the scenarios",
             ));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use socrates_app::config::Config;
-use socrates_app::exit::Complaint;
+use socrates_app::exit::Diagnostic;
 use socrates_app::keys::{self, KeysOptions};
 use socrates_app::output::Printer;
 
@@ -45,7 +45,7 @@ pub(crate) struct Keys {
 
 impl Keys {
     /// The configuration with them.
-    pub(crate) fn over(&self, config: &Config) -> Result<Config, Complaint> {
+    pub(crate) fn over(&self, config: &Config) -> Result<Config, Diagnostic> {
         let chosen = self.folder.iter().map(|folder| format!("{}={}", keys::SETTING, folder.display()));
         config.clone().with(&chosen.collect::<Vec<_>>())
     }

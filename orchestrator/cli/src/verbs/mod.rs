@@ -31,7 +31,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use socrates_app::config::Config;
-use socrates_app::exit::{Code, Complaint};
+use socrates_app::exit::{Code, Diagnostic};
 use socrates_app::output::Printer;
 
 /// From a few sentences and a map to a social-navigation scenario that is simulated, checked and scored.
@@ -90,10 +90,10 @@ pub(crate) enum Format {
 }
 
 /// How a verb ended.
-type Outcome = Result<Code, Complaint>;
+type Outcome = Result<Code, Diagnostic>;
 
 /// The code of a verb that judges nothing.
-fn done(outcome: Result<(), Complaint>) -> Outcome {
+fn done(outcome: Result<(), Diagnostic>) -> Outcome {
     outcome.map(|()| Code::Ok)
 }
 

@@ -13,7 +13,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Borders, Paragraph, Row, Table, Widget as _, Wrap};
 use socrates_app::config::Config;
-use socrates_app::exit::{Code, Complaint};
+use socrates_app::exit::{Code, Diagnostic};
 use socrates_app::output::{Format, Printer};
 use socrates_app::top::{BATCH_HEADS, BatchRow, FailureRow, STAGE_HEADS, Sight, Viewer, WORKER_HEADS};
 
@@ -33,7 +33,7 @@ const NO_FAILURES: &str = "none since this start of the orchestrator";
 /// Arguments of `top`.
 #[derive(Debug, Args)]
 pub(crate) struct Top {
-    /// Folder of a run that goes on, or a zenoh endpoint such as `tcp/127.0.0.1:7447` or `tls/lab-3:7447@main`.
+    /// Folder of a run that goes on, or a zenoh endpoint such as `tcp/127.0.0.1:7447` or `quic/lab-3:7447@main`.
     what: String,
     /// Print one frame and end; with `--format json`, the data.
     #[arg(long)]
@@ -47,7 +47,7 @@ impl Top {
         let once = self.once || talk.format == Format::Json;
         let drawn_on = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
         if !once && !drawn_on {
-            return Err(Complaint::input(
+            return Err(Diagnostic::input(
                 "`socrates top` draws on a terminal, and this is none",
                 "--once prints one frame",
             ));
@@ -61,7 +61,7 @@ impl Top {
 }
 
 /// One frame as text, as tall as it needs to be.
-async fn print(talk: &Printer, viewer: &Viewer) -> Result<(), Complaint> {
+async fn print(talk: &Printer, viewer: &Viewer) -> Result<(), Diagnostic> {
     let sight = viewer.look().await?;
     let columns =
         ratatui::crossterm::terminal::size().ok().filter(|_| talk.live).map_or(COLUMNS, |(columns, _)| columns);
@@ -106,7 +106,7 @@ fn drawn(area: Rect, draw: impl FnOnce(&mut Buffer)) -> Vec<String> {
 }
 
 /// Draws until a person has seen enough. One that does not answer is asked again; what was seen last stays.
-async fn follow(viewer: &Viewer) -> Result<(), Complaint> {
+async fn follow(viewer: &Viewer) -> Result<(), Diagnostic> {
     let mut sight = viewer.look().await?;
     let mut terminal = ratatui::try_init().map_err(broken)?;
     let followed = async {
@@ -143,8 +143,9 @@ async fn follow(viewer: &Viewer) -> Result<(), Complaint> {
     followed
 }
 
-fn broken(why: impl std::fmt::Display) -> Complaint {
-    Complaint::input(format!("the terminal cannot be drawn on: {why}"), "--once prints one frame").with_code(Code::Ours)
+fn broken(why: impl std::fmt::Display) -> Diagnostic {
+    Diagnostic::input(format!("the terminal cannot be drawn on: {why}"), "--once prints one frame")
+        .with_code(Code::Ours)
 }
 
 /// The key that was pressed within a pause; a window of another size is drawn at once.

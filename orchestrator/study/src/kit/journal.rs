@@ -241,6 +241,7 @@ impl Journal {
             rt_s: Some(said.rt_s),
             answers,
             checks,
+            simulated: false,
         };
         if let Some(before) = self.people.get(&at.participant).and_then(|person| person.said.get(&film)) {
             return if *before == line { Ok(None) } else { Err(Refusal::Twice { film }) };
@@ -283,7 +284,8 @@ impl Journal {
             return Err(Refusal::Time { value: duration_s });
         }
         let (participant, order) = (at.participant, Some(at.order));
-        let line = Line::Person { participant, order, duration_s: Some(duration_s), checks: BTreeMap::new() };
+        let (duration_s, checks) = (Some(duration_s), BTreeMap::new());
+        let line = Line::Person { participant, order, duration_s, checks, simulated: false };
         Ok((!at.ended).then_some(line))
     }
 

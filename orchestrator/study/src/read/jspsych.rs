@@ -11,7 +11,7 @@ use super::{Gather, Pseudonyms, Spot, count_check};
 use crate::design::Design;
 use crate::kit::asks::is_right;
 use crate::problem::Problem;
-use crate::rating::{Rating, Ratings, Row};
+use crate::rating::{Origin, Rating, Ratings, Row};
 
 /// Columns that may hold the id of a person, the first that is there counts.
 const PEOPLE: [&str; 3] = ["PROLIFIC_PID", "participant", "subject"];
@@ -43,6 +43,7 @@ pub fn jspsych(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Re
         if !matches!(kind, "survey-likert" | "video-slider-response" | "html-slider-response") {
             continue;
         }
+        gather.origin_of(cell(Origin::KEY), *number)?;
         // What the page adds to every line, and how long the person has been there.
         let elapsed = sheet.number((*number, cells), "time_elapsed")?.map(|ms| ms / 1000.0);
         let of = gather.person(id);

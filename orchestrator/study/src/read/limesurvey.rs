@@ -6,10 +6,10 @@ use crate::design::Design;
 use crate::kit::asks::is_right;
 use crate::kit::limesurvey::{PERSON, SEEN, code};
 use crate::problem::Problem;
-use crate::rating::{Rating, Ratings, Row};
+use crate::rating::{Origin, Rating, Ratings, Row};
 
 /// Columns that LimeSurvey adds, and those of our own survey that nothing here needs; addresses are never looked at.
-const IGNORED: [&str; 16] = [
+const IGNORED: [&str; 17] = [
     "id",
     "submitdate",
     "lastpage",
@@ -22,6 +22,7 @@ const IGNORED: [&str; 16] = [
     "refurl",
     "consent",
     SEEN,
+    Origin::KEY,
     "scenario",
     "groupTime",
     "questionTime",
@@ -103,6 +104,7 @@ fn line(gather: &mut Gather<'_>, sheet: &Sheet, roles: &[Role], number: u64, cel
         let hint = "keep the first response of a person and remove the others, as the study declares";
         return Err(gather.bad(spot(PERSON), &id, "this person has answered on an earlier line", hint));
     }
+    gather.origin_of(sheet.cell(cells, Origin::KEY), number)?;
     let place = (number, cells);
     let order = Some(sheet.cell(cells, "order").to_owned()).filter(|order| !order.is_empty());
     let duration_s = if sheet.has(DURATION) { sheet.number(place, DURATION)? } else { None };

@@ -19,7 +19,7 @@ pub use tables::{participants_csv, ratings_csv, ratings_of_csv};
 
 use crate::design::{Design, Dimension};
 use crate::problem::Problem;
-use crate::rating::{Participant, Rating, Ratings, Row};
+use crate::rating::{Origin, Participant, Rating, Ratings, Row};
 
 /// A format of answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +58,9 @@ pub fn format_of(text: &str, file: &str) -> Result<Format, Problem> {
     Err(Problem::new(file, "no format of answers that is known", hint).line(1).value(head))
 }
 
+/// Hint for a mixture of origins.
+const UNMIXED: &str = "read simulated answers apart from those of people, into another folder";
+
 /// Begins an id that is a hash already.
 pub const HASHED: char = '~';
 
@@ -94,6 +97,8 @@ pub(crate) struct Gather<'d> {
     pub(crate) names: Pseudonyms,
     pub(crate) file: String,
     people: BTreeMap<String, Gathered>,
+    /// Origin of the first answer, and its line.
+    origin: Option<(Origin, u64)>,
 }
 
 /// Where an answer stands: line and column.
@@ -105,7 +110,7 @@ pub(crate) struct Spot<'s> {
 
 impl<'d> Gather<'d> {
     pub(crate) fn new(design: &'d Design, names: Pseudonyms, file: &str) -> Self {
-        Self { design, names, file: file.to_owned(), people: BTreeMap::new() }
+        Self { design, names, file: file.to_owned(), people: BTreeMap::new(), origin: None }
     }
 
     /// The person who came under an id.
@@ -123,6 +128,25 @@ impl<'d> Gather<'d> {
 
     pub(crate) fn bad(&self, spot: Spot<'_>, value: &str, what: impl Into<String>, hint: impl Into<String>) -> Problem {
         Problem::new(&self.file, what, hint).line(spot.line).column(spot.column).value(value)
+    }
+
+    /// Notes the origin of an answer; refuses a file that mixes simulated answers with those of people.
+    pub(crate) fn origin(&mut self, origin: Origin, line: u64) -> Result<(), Problem> {
+        let (first, at) = *self.origin.get_or_insert((origin, line));
+        if first == origin {
+            return Ok(());
+        }
+        let what = format!("line {at} holds {}, and this line {}", first.name(), origin.name());
+        let spot = Spot { line, column: Origin::KEY };
+        Err(self.bad(spot, &origin.is_simulated().to_string(), what, UNMIXED))
+    }
+
+    /// The same of the origin that a cell states.
+    pub(crate) fn origin_of(&mut self, cell: &str, line: u64) -> Result<(), Problem> {
+        let hint = "1 for a simulated answer; 0 or nothing for an answer by a person";
+        let bad = || self.bad(Spot { line, column: Origin::KEY }, cell, "no such mark", hint);
+        let origin = Origin::of_cell(cell).ok_or_else(bad)?;
+        self.origin(origin, line)
     }
 
     /// Adds a row, whose rating has been checked.
@@ -198,7 +222,8 @@ impl<'d> Gather<'d> {
         if self.people.values().all(|of| of.rows.is_empty()) {
             return Err(Problem::new(&self.file, "it holds no answer", "export the responses, not the survey"));
         }
-        let mut all = Ratings::default();
+        let mut all =
+            Ratings { origin: self.origin.map_or(Origin::People, |(origin, _)| origin), ..Ratings::default() };
         for of in self.people.into_values() {
             all.participants.push(of.person);
             all.rows.extend(of.rows.into_values().map(|(row, _)| row));
@@ -217,11 +242,18 @@ impl Ratings {
     /// Joins tables of several files.
     ///
     /// # Errors
-    /// A person answered an item about a film in two of them.
+    /// A person answered an item about a film in two of them; some hold simulated answers and others answers by people.
     pub fn join(parts: Vec<(String, Self)>) -> Result<Self, Problem> {
         let mut seen: BTreeMap<(String, String, String), String> = BTreeMap::new();
         let (mut all, mut people) = (Self::default(), BTreeSet::new());
+        let mut first_of: Option<(String, Origin)> = None;
         for (file, part) in parts {
+            let (first, origin) = first_of.get_or_insert_with(|| (file.clone(), part.origin));
+            if *origin != part.origin {
+                let what = format!("it holds {}, and `{first}` {}", part.origin.name(), origin.name());
+                return Err(Problem::new(&file, what, UNMIXED).column(Origin::KEY));
+            }
+            all.origin = part.origin;
             for row in &part.rows {
                 let key = (row.participant.clone(), row.film.clone(), row.item.clone());
                 if let Some(first) = seen.insert(key, file.clone()) {

@@ -41,6 +41,9 @@ pub enum Line {
         /// Answers to attention checks.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         checks: BTreeMap<String, Value>,
+        /// Whether the answers are simulated: no person gave them.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        simulated: bool,
     },
     /// What is known of a person as a whole.
     Person {
@@ -53,13 +56,17 @@ pub enum Line {
         /// Answers to attention checks.
         #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
         checks: BTreeMap<String, Value>,
+        /// Whether the person is simulated.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        simulated: bool,
     },
 }
 
 /// Reads lines of JSON.
 ///
 /// # Errors
-/// A line that is none of both kinds, an unknown film, item or check, an answer out of range, an answer that stands twice.
+/// A line that is none of both kinds, an unknown film, item or check, an answer out of range, an answer that stands twice, simulated
+/// answers beside those of people.
 pub fn own(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Result<Ratings, Problem> {
     let mut gather = Gather::new(design, names, file);
     let mut persons: BTreeMap<String, u64> = BTreeMap::new();
@@ -70,7 +77,8 @@ pub fn own(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Result
         })?;
         match parsed {
             Line::Begin { participant, order, .. } => gather.person(&participant).order = Some(order),
-            Line::Film { participant, film, position, watched_s, rt_s, answers, checks } => {
+            Line::Film { participant, film, position, watched_s, rt_s, answers, checks, simulated } => {
+                gather.origin(simulated.into(), number)?;
                 count(&mut gather, design, number, &participant, &checks)?;
                 let film = gather.film(&film, at(number, "film"))?;
                 for (code, value) in answers {
@@ -87,7 +95,8 @@ pub fn own(text: &str, file: &str, design: &Design, names: Pseudonyms) -> Result
                     gather.add(&participant, row, at(number, &code))?;
                 }
             }
-            Line::Person { participant, order, duration_s, checks } => {
+            Line::Person { participant, order, duration_s, checks, simulated } => {
+                gather.origin(simulated.into(), number)?;
                 if let Some(before) = persons.insert(participant.clone(), number) {
                     let what = format!("line {before} is about this person already");
                     return Err(gather.bad(at(number, "participant"), &participant, what, "keep one of both lines"));

@@ -9,7 +9,7 @@ use super::{Gather, Pseudonyms, Spot, count_check};
 use crate::design::Design;
 use crate::kit::asks::is_right;
 use crate::problem::Problem;
-use crate::rating::{Ratings, Row};
+use crate::rating::{Origin, Ratings, Row};
 
 /// Columns that Qualtrics adds and that are never kept: addresses, places, names, mail.
 const DROPPED: [&str; 12] = [
@@ -72,6 +72,8 @@ enum Role {
     Status,
     /// An attention check.
     Check(String),
+    /// Whether the answers are simulated.
+    Origin,
     /// Nothing that is kept.
     Ignored,
 }
@@ -189,6 +191,7 @@ fn role_of(name: &str, id: &str, design: &Design) -> Option<Role> {
         "Duration (in seconds)" => return Some(Role::Duration),
         "Finished" => return Some(Role::Finished),
         "Status" => return Some(Role::Status),
+        Origin::KEY => return Some(Role::Origin),
         _other => {}
     }
     if design.checks.contains_key(name) {
@@ -222,6 +225,7 @@ fn line(
     if of(&Role::Status).is_some_and(|(_, cell)| matches!(cell, "1" | "Survey Preview")) {
         return Ok(());
     }
+    gather.origin_of(of(&Role::Origin).map_or("", |(_, cell)| cell), number)?;
     let spot = |column| Spot { line: number, column };
     let Some((column, id)) = of(&Role::Person).filter(|(_, id)| !id.is_empty()) else {
         return Err(gather.bad(
@@ -248,6 +252,7 @@ fn line(
             | Role::Finished
             | Role::Status
             | Role::Check(_)
+            | Role::Origin
             | Role::Ignored => continue,
         };
         if cell.is_empty() {
@@ -266,7 +271,7 @@ fn line(
         | Role::Position { .. }
         | Role::Person
         | Role::Order => None,
-        Role::Duration | Role::Finished | Role::Status | Role::Check(_) | Role::Ignored => None,
+        Role::Duration | Role::Finished | Role::Status | Role::Check(_) | Role::Origin | Role::Ignored => None,
     }));
     let person = gather.person(id);
     person.order = of(&Role::Order).map(|(_, cell)| cell.to_owned()).filter(|cell| !cell.is_empty());
@@ -297,7 +302,7 @@ fn line(
                 gather.add(id, row, spot(name))?;
             }
             Role::Time { .. } | Role::Watched { .. } | Role::Position { .. } | Role::Person | Role::Order => {}
-            Role::Duration | Role::Finished | Role::Status | Role::Ignored => {}
+            Role::Duration | Role::Finished | Role::Status | Role::Origin | Role::Ignored => {}
         }
     }
     Ok(())

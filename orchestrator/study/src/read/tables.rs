@@ -6,9 +6,9 @@ use super::sheet::Sheet;
 use super::{Gather, Pseudonyms, Spot};
 use crate::design::Design;
 use crate::problem::Problem;
-use crate::rating::{Participant, Ratings, Row};
+use crate::rating::{Origin, Ratings, Row};
 
-/// Columns of `ratings.csv`.
+/// Columns of `ratings.csv`; [`Origin::KEY`] follows where the answers are simulated.
 const RATINGS: [&str; 17] = [
     "participant",
     "scenario",
@@ -28,16 +28,17 @@ const RATINGS: [&str; 17] = [
     "excluded",
     "excluded_by",
 ];
-/// Columns of `participants.csv`.
+/// Columns of `participants.csv`; [`Origin::KEY`] follows where the people are simulated.
 const PEOPLE: [&str; 8] = ["participant", "order", "duration_s", "checks", "checks_failed", "status", "age", "sex"];
 
-/// The table as text.
-fn csv_of(head: &[&str], lines: impl Iterator<Item = Vec<String>>) -> String {
+/// The table as text; a last column marks every line of simulated answers.
+fn csv_of(head: &[&str], origin: Origin, lines: impl Iterator<Item = Vec<String>>) -> String {
+    let mark = |key: &str| origin.is_simulated().then(|| key.to_owned());
     let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
     // Writing into memory has no error but that of a line of another length, which these have not.
-    let mut wrong = writer.write_record(head).is_err();
+    let mut wrong = writer.write_record(head.iter().map(|name| (*name).to_owned()).chain(mark(Origin::KEY))).is_err();
     for line in lines {
-        wrong |= writer.write_record(&line).is_err();
+        wrong |= writer.write_record(line.into_iter().chain(mark("1"))).is_err();
     }
     debug_assert!(!wrong, "lines of one length");
     writer.into_inner().ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
@@ -56,6 +57,7 @@ pub fn ratings_csv(ratings: &Ratings, design: &Design, excluded_by: &dyn Fn(&str
     let order = |id: &str| orders.get(id).copied().unwrap_or_default().to_owned();
     csv_of(
         &RATINGS,
+        ratings.origin,
         ratings.rows.iter().filter_map(|row| {
             let (film, (dimension, item)) = (design.film(&row.film)?, design.item(&row.item)?);
             let rules = excluded_by(&row.participant);
@@ -84,11 +86,12 @@ pub fn ratings_csv(ratings: &Ratings, design: &Design, excluded_by: &dyn Fn(&str
 
 /// `participants.csv`.
 #[must_use]
-pub fn participants_csv(people: &[Participant]) -> String {
+pub fn participants_csv(ratings: &Ratings) -> String {
     let text = |of: &Option<String>| of.clone().unwrap_or_default();
     csv_of(
         &PEOPLE,
-        people.iter().map(|person| {
+        ratings.origin,
+        ratings.participants.iter().map(|person| {
             let count =
                 |of: fn((u32, u32)) -> u32| person.checks.map_or_else(String::new, |checks| of(checks).to_string());
             vec![
@@ -110,7 +113,7 @@ pub fn participants_csv(people: &[Participant]) -> String {
 /// `participants.csv`. Names of people are kept as they are.
 ///
 /// # Errors
-/// A missing or unknown column, an unknown film or item, an answer out of range, an answer twice.
+/// A missing or unknown column, an unknown film or item, an answer out of range, an answer twice, simulated answers beside those of people.
 pub fn ratings_of_csv(
     text: &str,
     people: Option<(&str, &str)>,
@@ -122,7 +125,9 @@ pub fn ratings_of_csv(
     if !sheet.has("film") {
         sheet.need(&["scenario", "planner"])?;
     }
-    if let Some(unknown) = sheet.head.iter().find(|name| !RATINGS.contains(&name.as_str())) {
+    if let Some(unknown) =
+        sheet.head.iter().find(|name| !RATINGS.contains(&name.as_str()) && name.as_str() != Origin::KEY)
+    {
         let hint = format!("columns are {}", RATINGS.join(", "));
         return Err(Problem::new(file, "unknown column", hint).line(1).column(unknown));
     }
@@ -132,6 +137,7 @@ pub fn ratings_of_csv(
     for (number, cells) in &sheet.lines {
         let spot = |column| Spot { line: *number, column };
         let cell = |column: &str| sheet.cell(cells, column);
+        gather.origin_of(cell(Origin::KEY), *number)?;
         let film = film_of(&gather, &cell, *number)?;
         let code = cell("item");
         gather.item(code, spot("item"))?;
@@ -200,6 +206,12 @@ fn add_people(all: &mut Ratings, text: &str, file: &str) -> Result<(), Problem> 
         let text = |column: &str| Some(sheet.cell(cells, column).to_owned()).filter(|cell| !cell.is_empty());
         let place = places.get(sheet.cell(cells, "participant"));
         let Some(person) = place.and_then(|at| all.participants.get_mut(*at)) else { continue };
+        let mark = sheet.cell(cells, Origin::KEY);
+        if Origin::of_cell(mark) != Some(all.origin) {
+            let what = format!("these people are not those of the ratings, which are {}", all.origin.name());
+            let hint = "keep the tables of one `study read` together";
+            return Err(Problem::new(file, what, hint).line(*number).column(Origin::KEY).value(mark));
+        }
         let at = (*number, cells.as_slice());
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of checks")]
         let count = |column: &str| Ok(sheet.number(at, column)?.map(|count| count.min(1e6) as u32));

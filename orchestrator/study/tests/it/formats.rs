@@ -36,12 +36,12 @@ fn answers_in_every_format_become_the_same_table() {
         assert!(text.contains("192.0.2.7") && words == text.contains("somewhat agree"));
         let read = qualtrics(&text, "export.csv", &design, NAMES, &Codebook::default()).unwrap();
         assert_eq!(read, first, "words: {words}");
-        let tables = ratings_csv(&read, &design, &|_| Vec::new()) + &participants_csv(&read.participants);
+        let tables = ratings_csv(&read, &design, &|_| Vec::new()) + &participants_csv(&read);
         assert!(!tables.contains("192.0.2") && !tables.contains("51.5") && !tables.contains("sim0"), "no place, no id");
     }
     let read = jspsych(&simulated.jspsych(&design), "data.csv", &design, NAMES).unwrap();
     assert_eq!(plain(read), plain(first.clone()));
-    let tables = (ratings_csv(&first, &design, &|_| Vec::new()), participants_csv(&first.participants));
+    let tables = (ratings_csv(&first, &design, &|_| Vec::new()), participants_csv(&first));
     let again = ratings_of_csv(&tables.0, Some((&tables.1, "participants.csv")), "ratings.csv", &design).unwrap();
     assert_eq!(again, first, "the tidy tables hold everything");
 }

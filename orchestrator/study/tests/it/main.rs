@@ -3,6 +3,7 @@
 
 mod formats;
 mod kits;
+mod origins;
 mod planted;
 mod reports;
 

@@ -77,5 +77,8 @@ fn the_page_and_the_methods_name_what_a_reviewer_asks_for() {
     }
     assert!(!page.contains("<b>Elevator") && !page.contains("NaN") && !page.contains("inf"), "{page}");
     let methods = words::methods(&results, &design);
-    assert!(methods.contains("18 people answered; 2 were excluded") && methods.contains("leaves 16"), "{methods}");
+    assert!(
+        methods.contains("18 simulated people answered; 2 were excluded") && methods.contains("leaves 16"),
+        "{methods}"
+    );
 }

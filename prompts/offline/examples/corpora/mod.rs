@@ -8,16 +8,19 @@ use std::path::Path;
 use serde::Deserialize;
 use socrates_model::{FactKind, Location, Reading, Request};
 
+/// A file of requests.
 #[derive(Deserialize)]
-struct Corpus {
-    request: Vec<Case>,
+pub(crate) struct Corpus {
+    pub(crate) request: Vec<Case>,
 }
 
+/// A request: its location, its text, and the facts that it has.
 #[derive(Deserialize)]
-struct Case {
-    on: String,
-    text: String,
-    facts: Vec<String>,
+pub(crate) struct Case {
+    pub(crate) on: String,
+    pub(crate) text: String,
+    #[serde(default)]
+    pub(crate) facts: Vec<String>,
 }
 
 /// Every request of every corpus in the order of the files: its text, the facts that it has, the request with its location, and whether it

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use socrates_model::{Gesture, Relation};
-use socrates_reader::{Act, Cue, Line, Person, Read, Reason, Step};
+use socrates_reader::{Act, Cue, Line, Read, Reason, Step};
 
 use crate::place;
 
@@ -65,7 +65,7 @@ fn the(class: socrates_model::PlaceClass) -> String {
     format!("the {}", place::words(class))
 }
 
-/// Whom a clause tells of: by their role, `the nurse` where they were named before it.
+/// The people that a clause tells of, by their role, `the nurse` where they were named before it.
 fn subject(text: &str, read: &Read, people: &[usize], from: usize) -> Option<String> {
     let first = *people.first()?;
     let role = &read.story.people.get(first)?.role;
@@ -105,7 +105,7 @@ fn phrases(read: &Read, who: usize, lines: &[&Line], many: bool) -> Option<Vec<S
     for line in lines {
         match line {
             Line::Relation(_, relation) => found.push(stands(*relation, many).to_owned()),
-            Line::Step(_, number) => found.push(step(read, person, person.steps.get(*number)?, many)?),
+            Line::Step(_, number) => found.push(step(read, person.steps.get(*number)?, many)?),
             Line::Person(_) => {}
             Line::Group(_) if person.relation == Some(Relation::Static) => found.push(verb("talk in a group", many)),
             Line::Side(_)
@@ -155,7 +155,7 @@ fn verb(phrase: &str, many: bool) -> String {
     format!("{first}{ending} {rest}").trim_end().to_owned()
 }
 
-fn step(read: &Read, person: &Person, step: &Step, many: bool) -> Option<String> {
+fn step(read: &Read, step: &Step, many: bool) -> Option<String> {
     if !step.until.is_empty() {
         return None;
     }
@@ -179,9 +179,7 @@ fn step(read: &Read, person: &Person, step: &Step, many: bool) -> Option<String>
     if let Some(secs) = step.for_s {
         text.push_str(&format!(" for {secs} s"));
     }
-    // What is waited for is that of the step before where the text says it once.
-    let first = person.steps.first().is_some_and(|first| std::ptr::eq(first, step));
-    for reason in step.when.iter().filter(|_| first || !step.when.is_empty()) {
+    for reason in &step.when {
         text.push_str(&format!(" {}", when(reason, many)?));
     }
     Some(text)

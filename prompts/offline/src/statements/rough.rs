@@ -1,5 +1,6 @@
 //! What became of every piece of the rough scenario, as the reader says it.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use socrates_model::fault::{Message, Span};
@@ -16,14 +17,19 @@ pub(super) fn statements(request: &Request, whole: &Understood, reading: &Readin
     let key = TextKey::RoughScenario;
     let text = key.text_of(request);
     let told = aside::split(text);
-    let read = socrates_reader::read(&told.story);
+    let read = &whole.said;
+    // All pieces of a clause have one rewording.
+    let mut reworded: BTreeMap<Option<usize>, Option<String>> = BTreeMap::new();
     let mut found: Vec<(Range<usize>, Became)> = Vec::new();
     for piece in &read.pieces {
         let became = match &piece.fate {
             Fate::Read => became(text, &piece.at, whole, reading),
             Fate::Background(reason) => Became::Background(*reason),
             Fate::NotPlayed(why) => Became::NotPlayed { why: Message::new(why.as_str()) },
-            Fate::NotRead => Became::NotRead { rewording: rewording(&told.story, &read, piece) },
+            Fate::NotRead => {
+                let own = reworded.entry(piece.clause).or_insert_with(|| rewording(&told.story, read, piece.clause));
+                Became::NotRead { rewording: own.clone() }
+            }
         };
         found.push((piece.at.clone(), became));
     }
@@ -48,9 +54,9 @@ pub(super) fn statements(request: &Request, whole: &Understood, reading: &Readin
     found.into_iter().filter_map(|(at, became)| statement(request, text, &at, became)).collect()
 }
 
-/// The clause of a piece in plain words, where those are read whole and the story stays the same.
-fn rewording(text: &str, read: &Read, piece: &Piece) -> Option<String> {
-    let own = || read.pieces.iter().filter(|other| other.clause.is_some() && other.clause == piece.clause);
+/// A clause in plain words, where those are read whole and the story stays the same.
+fn rewording(text: &str, read: &Read, clause: Option<usize>) -> Option<String> {
+    let own = || read.pieces.iter().filter(|other| other.clause.is_some() && other.clause == clause);
     let lost = |fate: &Fate| matches!(fate, Fate::NotRead | Fate::NotPlayed(_));
     let at = own().map(|other| other.at.start).min()?..own().map(|other| other.at.end).max()?;
     let clause = plain::clause(text, read, &at)?;

@@ -12,9 +12,7 @@ mod has_arrived;
 mod has_ended;
 mod has_time_passed;
 mod human_says;
-mod hunav_1;
-mod hunav_2;
-mod hunav_2_stateful;
+mod hunav;
 mod if_then_else;
 mod in_order;
 mod inverter;
@@ -50,6 +48,7 @@ mod while_do_else;
 mod world_only;
 
 pub(crate) use foreign::{FOREIGN_ACTION, FOREIGN_CONDITION};
+pub use hunav::DIALECTS;
 
 use crate::sheet::{Arity, Kind, Library, NodeSheet, Role};
 use crate::status::Status;
@@ -138,14 +137,6 @@ pub const RARE: &[&NodeSheet] = &[
     &scripted::UNSET,
 ];
 
-/// The sheets as other libraries declare them, where they differ from [`CATALOG`]: other ports, defaults and
-/// ranges, or nodes that we do not have. No library here knows more of [`CATALOG`] than its built-in part.
-pub const DIALECTS: &[(Library, &[&NodeSheet])] = &[
-    (Library::HunavSim1_0, hunav_1::CATALOG_1_0),
-    (Library::HunavSim1_1, hunav_1::CATALOG_1_1),
-    (Library::HunavSim2, hunav_2::CATALOG),
-];
-
 /// The sheet of a tag as a library declares it.
 #[must_use]
 pub fn sheet_in(tag: &str, library: Library) -> Option<&'static NodeSheet> {
@@ -159,8 +150,8 @@ pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
         .iter()
         .chain(STEPS)
         .chain(RARE)
-        .chain(DIALECTS.iter().rev().flat_map(|(_, sheets)| sheets.iter()))
         .copied()
+        .chain(DIALECTS.iter().rev().flat_map(|(_, sheets)| sheets))
         .find(|sheet| sheet.is_called(tag))
 }
 
@@ -201,7 +192,7 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
             sheet.library == Library::BuiltIn
         }
     });
-    let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets.iter().copied());
+    let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets);
     let steps = STEPS.iter().copied().filter(move |_| library == Library::Native);
     ours.chain(steps).chain(RARE.iter().copied()).chain(theirs)
 }

@@ -8,7 +8,7 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
 const FROM: &str = "<!-- catalog: as the test `readme` writes it -->\n";
 const TO: &str = "<!-- end of the catalog -->";
 
-fn rows(sheets: &[&NodeSheet], text: &mut String) {
+fn rows<'a>(sheets: impl IntoIterator<Item = &'a NodeSheet>, text: &mut String) {
     text.push_str("| node | kind | children | ports (default) | what it does |\n|---|---|---|---|---|\n");
     for sheet in sheets {
         let tag = match (sheet.v3_tag, sheet.only_in()) {
@@ -43,12 +43,12 @@ fn rows(sheets: &[&NodeSheet], text: &mut String) {
 
 fn catalog() -> String {
     let mut text = String::from("\n### Ours: BehaviorTree.CPP, the SocRATES fork, and our own nodes\n\n");
-    rows(CATALOG, &mut text);
+    rows(CATALOG.iter().copied(), &mut text);
     text.push_str("\n### Nodes by which the steps of a form are played, offered to nobody\n\n");
-    rows(STEPS, &mut text);
+    rows(STEPS.iter().copied(), &mut text);
     text.push_str("\n### Rare nodes of BehaviorTree.CPP, read and ticked but offered to nobody\n\n");
-    rows(RARE, &mut text);
-    for (library, sheets) in DIALECTS {
+    rows(RARE.iter().copied(), &mut text);
+    for (library, sheets) in DIALECTS.iter() {
         text.push_str(&format!("\n### `{}`, beside the nodes of BehaviorTree.CPP\n\n", library.name()));
         rows(sheets, &mut text);
     }

@@ -1,12 +1,11 @@
 //! The channels as data: what is published, under which name, in which words, and when.
 
-use std::borrow::Cow;
 use std::ops::{BitAnd, BitOr};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use foxglove::messages::{FrameTransforms, Grid, LaserScan, Log, Odometry, PointCloud, PosesInFrame, SceneUpdate};
-use foxglove::{Encode as _, Schema};
+use socrates_stream::foxglove::description_by_files;
+use socrates_stream::mcap::record_schema;
 
 /// Most frames per simulated second that are worth sending; Lichtblick complains above 60 messages a second and topic.
 pub const FRAMES_HZ: f64 = 20.0;
@@ -132,9 +131,6 @@ pub const CATALOG: [Sheet; 10] = [
 /// Name of the records of 64 bytes, as recordings have it.
 const AGENT_STATE: &str = "socrates.AgentState.v1";
 
-/// The record of [`AGENT_STATE`], described: JSON Schema with the place of each field.
-const AGENT_STATE_SCHEMA: &str = r#"{"title":"socrates.AgentState.v1","description":"every agent of one tick: records of 64 bytes one after the other, little endian","type":"array","x-record-bytes":64,"x-byte-order":"little","items":{"type":"object","properties":{"tick":{"type":"integer","format":"uint64","x-offset":0,"description":"number of the tick, from 0"},"agent":{"type":"integer","format":"uint32","x-offset":8,"description":"0 for the robot, k for human_k"},"flags":{"type":"integer","format":"uint32","x-offset":12,"description":"bits 0-7: 0 robot, 1 human; 8-15: gesture; 16-31: leaf, as an index into the header's list"},"x":{"type":"number","format":"float64","x-offset":16,"description":"m"},"y":{"type":"number","format":"float64","x-offset":24,"description":"m"},"yaw":{"type":"number","format":"float64","x-offset":32,"description":"rad"},"vx":{"type":"number","format":"float64","x-offset":40,"description":"m/s"},"vy":{"type":"number","format":"float64","x-offset":48,"description":"m/s"},"omega":{"type":"number","format":"float64","x-offset":56,"description":"rad/s"}}}}"#;
-
 impl Topic {
     /// Number of its channel, from 1.
     #[must_use]
@@ -156,37 +152,14 @@ impl Topic {
 
     /// Its schema as bytes: a set of descriptors for protocol buffers, text for JSON Schema.
     #[must_use]
-    pub fn schema(self) -> Cow<'static, [u8]> {
-        let data = |schema: Option<Schema>| schema.map(|schema| schema.data).unwrap_or_default();
-        match self {
-            Self::Map => data(Grid::get_schema()),
-            Self::Scene | Self::Labels => data(SceneUpdate::get_schema()),
-            Self::Frames => data(FrameTransforms::get_schema()),
-            Self::Crowd => data(PointCloud::get_schema()),
-            Self::Scan => data(LaserScan::get_schema()),
-            Self::Plan => data(PosesInFrame::get_schema()),
-            Self::Odometry => data(Odometry::get_schema()),
-            Self::Events => data(Log::get_schema()),
-            Self::Agents => Cow::Borrowed(AGENT_STATE_SCHEMA.as_bytes()),
-        }
+    pub fn schema(self) -> Vec<u8> {
+        if self == Self::Agents { record_schema("").into() } else { description_by_files(self.sheet().schema) }
     }
 
     /// Its schema as the protocol writes it in JSON: base64 for protocol buffers, the text itself for JSON Schema.
     #[must_use]
     pub fn schema_text(self) -> String {
-        let schema = self.schema();
-        match self {
-            Self::Agents => String::from_utf8_lossy(&schema).into_owned(),
-            Self::Map
-            | Self::Scene
-            | Self::Labels
-            | Self::Frames
-            | Self::Crowd
-            | Self::Scan
-            | Self::Plan
-            | Self::Odometry
-            | Self::Events => STANDARD.encode(&schema),
-        }
+        if self == Self::Agents { record_schema("") } else { STANDARD.encode(self.schema()) }
     }
 }
 
@@ -251,6 +224,8 @@ impl FromIterator<Topic> for Topics {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use foxglove::Encode as _;
+    use foxglove::messages::{FrameTransforms, Grid, LaserScan, Log, Odometry, PointCloud, PosesInFrame, SceneUpdate};
     use socrates_model::recording::{AGENT_STATE_BYTES, AgentState};
 
     #[test]
@@ -265,14 +240,24 @@ mod tests {
     }
 
     #[test]
-    fn a_schema_of_protocol_buffers_names_its_own_message() {
-        for sheet in CATALOG.iter().filter(|sheet| sheet.encoding == "protobuf") {
-            let schema = sheet.topic.schema();
-            let name = sheet.schema.strip_prefix("foxglove.").unwrap();
-            // A descriptor names its file: field 1 with its length, then the text.
-            let file = format!("foxglove/{name}.proto");
-            assert!(schema.windows(file.len()).any(|bytes| bytes == file.as_bytes()), "{}", sheet.name);
-            assert_eq!(STANDARD.decode(sheet.topic.schema_text()).unwrap(), *schema);
+    fn schemas_are_those_of_the_library_of_foxglove_byte_by_byte() {
+        let theirs = [
+            (Topic::Map, Grid::get_schema()),
+            (Topic::Scene, SceneUpdate::get_schema()),
+            (Topic::Frames, FrameTransforms::get_schema()),
+            (Topic::Crowd, PointCloud::get_schema()),
+            (Topic::Scan, LaserScan::get_schema()),
+            (Topic::Plan, PosesInFrame::get_schema()),
+            (Topic::Odometry, Odometry::get_schema()),
+            (Topic::Events, Log::get_schema()),
+            (Topic::Labels, SceneUpdate::get_schema()),
+        ];
+        assert_eq!(theirs.len(), CATALOG.iter().filter(|sheet| sheet.encoding == "protobuf").count());
+        for (topic, schema) in theirs {
+            let schema = schema.unwrap();
+            assert_eq!((topic.sheet().schema, topic.sheet().schema_encoding), (&*schema.name, &*schema.encoding));
+            assert_eq!(topic.schema(), *schema.data, "{}", schema.name);
+            assert_eq!(STANDARD.decode(topic.schema_text()).unwrap(), *schema.data);
         }
     }
 

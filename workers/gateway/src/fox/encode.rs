@@ -1,22 +1,13 @@
 //! Messages of a run as bytes, one function each.
 
-use foxglove::Encode;
-use foxglove::bytes::Bytes;
-use foxglove::messages::log::Level;
-use foxglove::messages::packed_element_field::NumericType;
-use foxglove::messages::{
-    FrameTransform, FrameTransforms, Grid as GridMessage, LaserScan, Log, Odometry, PackedElementField, PointCloud,
-    Pose, PosesInFrame, Quaternion, Timestamp, Vector2, Vector3,
-};
+use bytes::Bytes;
 use socrates_model::grid::Grid;
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, EventKind};
 use socrates_model::{AgentId, SimTime};
-use socrates_stream::mcap::{Floor, floor};
+use socrates_stream::foxglove::{FLOAT32, MAP, Proto, head, occupancy, packed, pose, stamp, transform, vector};
 
-/// Frame of the map.
-pub(crate) const MAP: &str = "map";
 /// Frame of the robot.
-pub(crate) const ROBOT: &str = "robot";
+const ROBOT: &str = "robot";
 /// Height at which the beams of the lidar are drawn, m.
 const SCAN_Z_M: f64 = 0.2;
 /// Height at which the intended way is drawn, m: above the map, below everybody.
@@ -25,57 +16,22 @@ const WAY_Z_M: f64 = 0.02;
 const POINT_Z_M: f32 = 1.0;
 /// Bytes of a point: x, y, z, speed.
 const POINT_BYTES: u32 = 16;
-/// Entries of a covariance, which is 6 by 6.
-const COVARIANCE: usize = 36;
+/// A covariance that is not known: its schema asks for 6 by 6 numbers, and for zeros then.
+const UNKNOWN: [f64; 36] = [0.0; 36];
 /// Longest text of an event, characters.
 const EVENT_CHARS: usize = 2_000;
-const NANOS: u64 = 1_000_000_000;
 
 /// A message as bytes.
-pub(crate) fn bytes(message: &impl Encode) -> Bytes {
-    let mut out = Vec::with_capacity(message.encoded_len().unwrap_or_default());
-    // Only a buffer that cannot grow is ever too small.
-    if message.encode(&mut out).is_err() {
-        out.clear();
-    }
-    out.into()
-}
-
-/// Simulated time as a message has it: seconds and nanoseconds from 0.
-pub(crate) fn stamp(time: SimTime) -> Option<Timestamp> {
-    let (sec, nsec) = (time.nanos() / NANOS, time.nanos() % NANOS);
-    u32::try_from(sec).ok().zip(u32::try_from(nsec).ok()).and_then(|(sec, nsec)| Timestamp::new_checked(sec, nsec))
-}
-
-pub(crate) fn turned(yaw: f64) -> Quaternion {
-    Quaternion { x: 0.0, y: 0.0, z: libm::sin(yaw / 2.0), w: libm::cos(yaw / 2.0) }
-}
-
-pub(crate) fn pose([x, y, z]: [f64; 3], yaw: f64) -> Pose {
-    Pose { position: Some(Vector3 { x, y, z }), orientation: Some(turned(yaw)) }
-}
-
-fn field(name: &str, offset: u32, kind: NumericType) -> PackedElementField {
-    PackedElementField { name: name.to_owned(), offset, r#type: kind.into() }
+pub(crate) fn bytes(write: impl FnOnce(&mut Proto)) -> Bytes {
+    let mut out = Proto::lean();
+    write(&mut out);
+    out.into_bytes().into()
 }
 
 /// `/map`: the grid, its first row at the bottom; nothing where cells are missing or the map is empty.
 #[must_use]
 pub fn map(grid: &Grid) -> Option<Bytes> {
-    let Floor { columns, side_m: side, cells } = floor(grid)?;
-    let stride = u32::try_from(columns).ok()?;
-    let origin = &grid.origin;
-    Some(bytes(&GridMessage {
-        timestamp: stamp(SimTime::ZERO),
-        frame_id: MAP.to_owned(),
-        pose: Some(pose([origin.x, origin.y, 0.0], origin.yaw)),
-        column_count: stride,
-        cell_size: Some(Vector2 { x: side, y: side }),
-        row_stride: stride,
-        cell_stride: 1,
-        fields: vec![field("occupancy", 0, NumericType::Uint8)],
-        data: cells.into(),
-    }))
+    Some(bytes(|out| occupancy(out, grid))).filter(|bytes| !bytes.is_empty())
 }
 
 /// `/robot/plan`: the points of the way, each facing the next; nothing for a way without points.
@@ -83,33 +39,22 @@ pub fn map(grid: &Grid) -> Option<Bytes> {
 pub fn plan(way: &[[f64; 2]]) -> Option<Bytes> {
     let mut yaw = 0.0;
     let next = way.iter().skip(1).map(Some).chain([None]);
-    let poses: Vec<Pose> = way
-        .iter()
-        .zip(next)
-        .map(|([x, y], next)| {
+    let poses = |out: &mut Proto| {
+        head(out, SimTime::ZERO, MAP);
+        for ([x, y], next) in way.iter().zip(next) {
             if let Some([to_x, to_y]) = next {
                 yaw = libm::atan2(to_y - y, to_x - x);
             }
-            pose([*x, *y, WAY_Z_M], yaw)
-        })
-        .collect();
-    let message = PosesInFrame { timestamp: stamp(SimTime::ZERO), frame_id: MAP.to_owned(), poses };
-    (!message.poses.is_empty()).then(|| bytes(&message))
+            pose(out, 3, [*x, *y, WAY_Z_M], yaw);
+        }
+    };
+    (!way.is_empty()).then(|| bytes(poses))
 }
 
 /// `/tf`: a frame for each of these, named as they are.
 #[must_use]
 pub fn frames<'a>(shown: impl Iterator<Item = (&'a str, &'a AgentState)>, time: SimTime) -> Bytes {
-    let transforms = shown
-        .map(|(name, state)| FrameTransform {
-            timestamp: stamp(time),
-            parent_frame_id: MAP.to_owned(),
-            child_frame_id: name.to_owned(),
-            translation: Some(Vector3 { x: state.x, y: state.y, z: 0.0 }),
-            rotation: Some(turned(state.yaw)),
-        })
-        .collect();
-    bytes(&FrameTransforms { transforms })
+    bytes(|out| shown.for_each(|(name, state)| transform(out, name, state, time)))
 }
 
 /// `/crowd`: a point for each of these; x, y, z in m and the speed in m/s.
@@ -122,15 +67,14 @@ pub fn crowd<'a>(people: impl Iterator<Item = &'a AgentState>, time: SimTime) ->
         let point = [state.x as f32, state.y as f32, POINT_Z_M, speed as f32];
         data.extend_from_slice(point.map(f32::to_le_bytes).as_flattened());
     }
-    bytes(&PointCloud {
-        timestamp: stamp(time),
-        frame_id: MAP.to_owned(),
-        pose: Some(pose([0.0; 3], 0.0)),
-        point_stride: POINT_BYTES,
-        fields: [("x", 0), ("y", 4), ("z", 8), ("speed", 12)]
-            .map(|(name, offset)| field(name, offset, NumericType::Float32))
-            .into(),
-        data: data.into(),
+    bytes(|out| {
+        head(out, time, MAP);
+        pose(out, 3, [0.0; 3], 0.0);
+        out.fixed(4, POINT_BYTES);
+        for (name, offset) in [("x", 0), ("y", 4), ("z", 8), ("speed", 12)] {
+            packed(out, 5, name, offset, FLOAT32);
+        }
+        out.data(6, &data);
     })
 }
 
@@ -139,14 +83,11 @@ pub fn crowd<'a>(people: impl Iterator<Item = &'a AgentState>, time: SimTime) ->
 pub fn scan(ranges: &[f32], time: SimTime) -> Bytes {
     #[expect(clippy::cast_precision_loss, reason = "a scan has fewer than 2^53 beams")]
     let beams = ranges.len().max(1) as f64;
-    bytes(&LaserScan {
-        timestamp: stamp(time),
-        frame_id: ROBOT.to_owned(),
-        pose: Some(pose([0.0, 0.0, SCAN_Z_M], 0.0)),
-        start_angle: 0.0,
-        end_angle: std::f64::consts::TAU * (beams - 1.0) / beams,
-        ranges: ranges.iter().copied().map(f64::from).collect(),
-        intensities: Vec::new(),
+    bytes(|out| {
+        head(out, time, ROBOT);
+        pose(out, 3, [0.0, 0.0, SCAN_Z_M], 0.0);
+        out.double(5, std::f64::consts::TAU * (beams - 1.0) / beams);
+        out.doubles(6, ranges.iter().copied().map(f64::from));
     })
 }
 
@@ -154,21 +95,14 @@ pub fn scan(ranges: &[f32], time: SimTime) -> Bytes {
 #[must_use]
 pub fn odometry(robot: &AgentState, time: SimTime) -> Bytes {
     let (sin, cos) = (libm::sin(robot.yaw), libm::cos(robot.yaw));
-    bytes(&Odometry {
-        timestamp: stamp(time),
-        frame_id: MAP.to_owned(),
-        body_frame_id: ROBOT.to_owned(),
-        pose: Some(pose([robot.x, robot.y, 0.0], robot.yaw)),
-        linear_velocity: Some(Vector3 {
-            x: robot.vx * cos + robot.vy * sin,
-            y: robot.vy * cos - robot.vx * sin,
-            z: 0.0,
-        }),
-        angular_velocity: Some(Vector3 { x: 0.0, y: 0.0, z: robot.omega }),
-        // The schema asks for 36 entries, and for zeros where they are not known.
-        pose_covariance: vec![0.0; COVARIANCE],
-        velocity_covariance: vec![0.0; COVARIANCE],
-        metadata: Vec::new(),
+    bytes(|out| {
+        head(out, time, MAP);
+        out.text(3, ROBOT);
+        pose(out, 4, [robot.x, robot.y, 0.0], robot.yaw);
+        vector(out, 5, [robot.vx * cos + robot.vy * sin, robot.vy * cos - robot.vx * sin, 0.0]);
+        vector(out, 6, [0.0, 0.0, robot.omega]);
+        out.doubles(7, UNKNOWN.into_iter());
+        out.doubles(8, UNKNOWN.into_iter());
     })
 }
 
@@ -180,36 +114,43 @@ pub fn agents(states: &[AgentState]) -> Bytes {
     out.into()
 }
 
+/// How much an event matters, as a number of `Log.Level`.
+#[derive(Debug, Clone, Copy)]
+enum LogLevel {
+    Debug = 1,
+    Info = 2,
+    Warning = 3,
+}
+
 /// `/events`: an event with its text, told by whom it is about.
 #[must_use]
 pub fn log(event: &Event, text: &str) -> Bytes {
     let (level, name) = told_by(&event.kind);
-    bytes(&Log {
-        timestamp: stamp(event.time),
-        level: level.into(),
-        message: text.chars().take(EVENT_CHARS).collect(),
-        name,
-        file: String::new(),
-        line: 0,
+    let message: String = text.chars().take(EVENT_CHARS).collect();
+    bytes(|out| {
+        stamp(out, 1, event.time);
+        out.number(2, level as u64);
+        out.text(3, &message);
+        out.text(4, &name);
     })
 }
 
 /// How much an event matters, and whom it is about.
-fn told_by(kind: &EventKind) -> (Level, String) {
+fn told_by(kind: &EventKind) -> (LogLevel, String) {
     let human = |human: &socrates_model::HumanId| human.to_string();
     match kind {
-        EventKind::Gesture { agent, .. } => (Level::Info, agent.to_string()),
+        EventKind::Gesture { agent, .. } => (LogLevel::Info, agent.to_string()),
         EventKind::Leaf { human: id, .. }
         | EventKind::StepEnded { human: id, .. }
-        | EventKind::Sees { human: id, .. } => (Level::Debug, human(id)),
-        EventKind::Encounter { human: id, .. } => (Level::Info, human(id)),
+        | EventKind::Sees { human: id, .. } => (LogLevel::Debug, human(id)),
+        EventKind::Encounter { human: id, .. } => (LogLevel::Info, human(id)),
         EventKind::Contact { a: agent, .. } | EventKind::WallContact { agent, .. } | EventKind::Stuck { agent } => {
-            (Level::Warning, agent.to_string())
+            (LogLevel::Warning, agent.to_string())
         }
-        EventKind::Door { door, .. } => (Level::Info, door.chars().take(EVENT_CHARS).collect()),
-        EventKind::Node { agent, .. } => (Level::Debug, agent.to_string()),
-        EventKind::RobotArrived => (Level::Info, AgentId::Robot.to_string()),
-        EventKind::End { .. } => (Level::Info, "run".to_owned()),
+        EventKind::Door { door, .. } => (LogLevel::Info, door.chars().take(EVENT_CHARS).collect()),
+        EventKind::Node { agent, .. } => (LogLevel::Debug, agent.to_string()),
+        EventKind::RobotArrived => (LogLevel::Info, AgentId::Robot.to_string()),
+        EventKind::End { .. } => (LogLevel::Info, "run".to_owned()),
     }
 }
 
@@ -219,6 +160,8 @@ mod tests {
 
     use super::*;
     use foxglove::Decode as _;
+    use foxglove::messages::log::Level;
+    use foxglove::messages::{Grid as GridMessage, LaserScan, Log, Odometry, PointCloud, PosesInFrame, Timestamp};
     use socrates_model::Pose as MapPose;
 
     fn close(a: f64, b: f64) -> bool {
@@ -254,7 +197,9 @@ mod tests {
         assert_eq!((read.column_count, read.row_stride, read.cell_stride), (3, 3, 1));
         let at = read.pose.unwrap().position.unwrap();
         assert!(close(at.x, -1.0) && close(at.y, 2.0) && close(read.cell_size.unwrap().x, 0.5));
-        assert_eq!(read.fields, [field("occupancy", 0, NumericType::Uint8)]);
+        let fields: Vec<(&str, u32, i32)> =
+            read.fields.iter().map(|field| (field.name.as_str(), field.offset, field.r#type)).collect();
+        assert_eq!(fields, [("occupancy", 0, 1)]);
     }
 
     #[test]
@@ -280,7 +225,7 @@ mod tests {
         let grid = Grid { width, height, resolution_m: 0.05, origin: MapPose::new(0.0, 0.0, 0.0), cells };
         let read = GridMessage::decode(map(&grid).unwrap()).unwrap();
         assert_eq!((read.column_count, read.data.len()), (2_001, 2_001 * 1_001));
-        assert!(read.data.len() <= socrates_stream::mcap::FLOOR_CELLS && close(read.cell_size.unwrap().y, 0.1));
+        assert!(read.data.len() <= socrates_stream::foxglove::FLOOR_CELLS && close(read.cell_size.unwrap().y, 0.1));
         let walls: Vec<usize> = (0..read.data.len()).filter(|at| read.data[*at] == 100).collect();
         assert_eq!(walls, [0, 2_001 * 1_000 + 1_000]);
     }
@@ -359,6 +304,7 @@ mod tests {
 
     #[test]
     fn time_beyond_what_a_stamp_holds_has_no_stamp() {
+        let stamp = |time| Log::decode(log(&Event { time, kind: EventKind::RobotArrived }, "")).unwrap().timestamp;
         assert_eq!(stamp(SimTime::from_nanos(u64::MAX)), None);
         assert_eq!(stamp(SimTime::ZERO), Timestamp::new_checked(0, 0));
     }

@@ -1,6 +1,6 @@
 //! What is shown: the facts of a run before its first frame, the frames, and the messages that are made of them.
 
-use foxglove::bytes::Bytes;
+use bytes::Bytes;
 use socrates_model::SimTime;
 use socrates_model::grid::Grid;
 use socrates_model::recording::{AgentInfo, AgentState};

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-use foxglove::bytes::Bytes;
+use bytes::Bytes;
 use socrates_model::SimTime;
 
 use super::channels::{Topic, Topics};

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use foxglove::bytes::Bytes;
+use bytes::Bytes;
 use socrates_model::recording::{AgentState, Event, EventKind};
 use socrates_model::{Gesture, SimTime};
 
@@ -132,7 +132,8 @@ impl Stage {
             tell(Topic::Scene, self.scene());
         }
         if wanted.has(Topic::Frames) {
-            let named = drawn.iter().filter_map(|state| Some((self.figures.get(&state.agent)?.name.as_str(), *state)));
+            let named =
+                drawn.iter().filter_map(|state| Some((self.figures.get(&state.agent)?.body.name.as_str(), *state)));
             tell(Topic::Frames, encode::frames(named, frame.time));
         }
         if wanted.has(Topic::Crowd) {

@@ -18,9 +18,11 @@ use socrates_model::driver::{MissionDoor, MissionMap, map_cells};
 use socrates_model::live::{LiveDoor, LiveEnd, LivePlace, LiveScene};
 use socrates_model::recording::{AgentInfo, Event, EventKind, Recording, RecordingHeader};
 use socrates_model::robot::RobotFile;
-use socrates_model::{AgentId, AgentState, Cell, Grid, HumanId, PlannerName, Pose, RobotModel, RunId, SimTime};
+use socrates_model::{
+    AgentId, AgentState, Cell, Grid, HumanId, Onlooker as _, PlannerName, Pose, RobotModel, RunId, SimTime,
+};
 use socrates_stream::mcap::{Tape, Writer};
-use socrates_stream::{FrameSink as _, Linger, LiveSink};
+use socrates_stream::{Linger, LiveSink};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 use tokio_tungstenite::MaybeTlsStream;
@@ -181,11 +183,10 @@ impl Playing {
             let states = self.recording.tick(tick);
             let writer = self.writer.as_mut().unwrap();
             writer.tick(states).unwrap();
-            for event in self.recording.events.iter().filter(|event| event.time.tick() == tick as u64) {
-                writer.event(event).unwrap();
-                self.sink.event(event);
-            }
-            self.sink.tick(tick as u64, states);
+            let now = self.recording.events.iter().filter(|event| event.time.tick() == tick as u64);
+            let events: Vec<Event> = now.cloned().collect();
+            events.iter().for_each(|event| writer.event(event).unwrap());
+            self.sink.tick(states, &events);
             self.next = tick + 1;
         }
     }

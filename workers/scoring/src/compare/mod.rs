@@ -17,16 +17,24 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::{PlannerName, Report};
 
-use crate::metrics::{KEY_FIGURES, Sheet, sheet};
+use crate::metrics::{KEY_FIGURES, Sheet, count, sheet};
 use crate::pool::{PoolFault, PooledRun, alike};
 
 use outcome::References;
 pub use outcome::{Cause, Outcome};
-pub use rows::{Difference, Mean, Order, Row};
+pub use rows::{Difference, MARKED, Mean, Order, Row};
 pub use write::runs_csv;
 
 /// Metrics of a comparison beside the key figures, where they have values: groups and what the robot costs people.
 const BESIDE: [&str; 5] = ["o_space_seconds", "o_space_entries", "group_splits", "people_deviation", "flow_delay_mean"];
+
+/// Metrics that describe a completed trip: a robot that stood still would have the shortest way. They have a value of arrivals alone.
+const OF_TRIP: [&str; 1] = ["path_length"];
+/// Metrics of the tables that have a value of arrivals alone, by these tables or by their own formula.
+const OF_ARRIVALS: [&str; 3] = ["time_to_goal", "path_length", "path_efficiency"];
+/// A planner with fewer arrivals than this share of the most arrivals of a planner is not ordered, and never marked as best, except
+/// in success.
+pub const LEAST_ARRIVALS: f64 = 0.9;
 
 /// A run that was wanted.
 #[derive(Debug, Clone, Copy)]
@@ -79,6 +87,10 @@ pub struct Comparison {
     pub resampled: Resampled,
     /// What became of the runs, by planner.
     pub outcomes: Vec<Outcome>,
+    /// Whether a planner arrived too seldom to be marked as best, by planner ([`LEAST_ARRIVALS`]).
+    pub seldom: Vec<bool>,
+    /// Key figures without a row: some planners have values, and no common run has one of every planner.
+    pub unpaired: Vec<&'static Sheet>,
     /// Figures, by metric in the order of the tables.
     pub rows: Vec<Row>,
 }
@@ -164,7 +176,17 @@ pub fn compare(entries: &[Entry<'_>], planners: &[PlannerName]) -> Result<Compar
     let resampled =
         if scenarios.len() > 1 { Resampled::Scenarios(scenarios.len()) } else { Resampled::Seeds(common.len()) };
     let references = References::of(entries);
+    let seldom = seldom(&by_planner, &common);
     let wanted = KEY_FIGURES.iter().chain(&BESIDE).filter_map(|id| sheet(id));
+    let figures = rows::Basis { planners: &by_planner, common: &common, resampled, seldom: &seldom };
+    let rows: Vec<Row> = wanted.filter_map(|metric| rows::row(metric, &figures)).collect();
+    let has_row = |metric: &&'static Sheet| rows.iter().any(|row| row.metric.id == metric.id);
+    let has_value = |metric: &&'static Sheet| {
+        let mut own = by_planner.iter().flat_map(BTreeMap::values);
+        own.any(|entry| value(entry, metric).is_some())
+    };
+    let key = KEY_FIGURES.iter().filter_map(|id| sheet(id));
+    let unpaired = key.filter(|metric| !has_row(metric) && has_value(metric)).collect();
     Ok(Comparison {
         thresholds,
         planners: planners.to_vec(),
@@ -172,16 +194,36 @@ pub fn compare(entries: &[Entry<'_>], planners: &[PlannerName]) -> Result<Compar
         common: common.len(),
         resampled,
         outcomes: planners.iter().map(|planner| outcome::of(planner, entries, &references)).collect(),
-        rows: wanted.filter_map(|metric| rows::row(metric, &by_planner, &common, resampled)).collect(),
+        seldom,
+        unpaired,
+        rows,
     })
 }
 
-/// The value of a metric in a run. A run without a result is no success and no arrival; of anything else it has no value.
+/// The value of a metric in a run. A run without a result is no success and no arrival; of anything else it has no value. A metric of a
+/// completed trip has no value where the robot did not arrive.
 fn value(entry: &Entry<'_>, metric: &Sheet) -> Option<f64> {
     match entry.result {
+        Ok(_) if OF_TRIP.contains(&metric.id) && arrived(entry) == Some(false) => None,
         Ok(report) => report.metric(metric.id)?.value,
         Err(_) => matches!(metric.id, "success" | "arrived").then_some(0.0),
     }
+}
+
+/// Whether the robot arrived; `None` where its goal is not known.
+fn arrived(entry: &Entry<'_>) -> Option<bool> {
+    entry.result.map_or(Some(false), |report| report.metric("arrived")?.value.map(|value| value > 0.5))
+}
+
+/// Whether a planner arrived in too few of the common runs to be marked as best, by planner.
+fn seldom(planners: &[BTreeMap<Key<'_>, &Entry<'_>>], common: &BTreeSet<Key<'_>>) -> Vec<bool> {
+    let known = |own: &BTreeMap<Key<'_>, &Entry<'_>>| {
+        let of: Vec<bool> = common.iter().filter_map(|key| arrived(own.get(key)?)).collect();
+        (!of.is_empty()).then(|| count(of.iter().filter(|arrived| **arrived).count()) / count(of.len()))
+    };
+    let shares: Vec<Option<f64>> = planners.iter().map(known).collect();
+    let most = shares.iter().flatten().copied().fold(0.0, f64::max);
+    shares.iter().map(|share| share.is_some_and(|share| share < LEAST_ARRIVALS * most)).collect()
 }
 
 /// `mppi, nav2can and orca`.

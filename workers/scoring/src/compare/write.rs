@@ -3,7 +3,7 @@
 use socrates_stream::csv::{joined, one_line};
 
 use super::outcome::References;
-use super::{Comparison, Entry, Resampled, Row};
+use super::{Comparison, Entry, LEAST_ARRIVALS, MARKED, OF_ARRIVALS, Resampled, Row};
 use crate::metrics::{Direction, Sheet, sheets};
 
 /// First columns of the table of runs; a column per metric follows.
@@ -36,13 +36,27 @@ pub fn runs_csv(entries: &[Entry<'_>]) -> String {
 
 /// A metric as LaTeX has it, with its unit and an arrow to what is better.
 fn heading(metric: &Sheet) -> String {
-    let unit = metric.unit_shown().map_or_else(String::new, |unit| format!(" [{}]", tex(unit)));
+    // Powers and products of units as mathematics has them: `m/s^3`, `m*s`.
+    let unit =
+        metric.unit_shown().map_or_else(String::new, |unit| format!(" [{}]", powers(unit).replace('*', "$\\cdot$")));
     let arrow = match metric.direction {
         Direction::Up => " $\\uparrow$",
         Direction::Down => " $\\downarrow$",
         Direction::Neutral => "",
     };
-    format!("{}{unit}{arrow}", tex(&metric.id.replace('_', " ")))
+    format!("{}{unit}{arrow}", tex(&spaced(metric.id)))
+}
+
+/// A unit whose powers are set as such.
+fn powers(unit: &str) -> String {
+    let mut parts = unit.split('^');
+    let mut out = tex(parts.next().unwrap_or_default());
+    for part in parts {
+        let digits = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
+        let (power, rest) = part.split_at(digits);
+        out.push_str(&format!("$^{{{power}}}${}", tex(rest)));
+    }
+    out
 }
 
 /// Text in which nothing is a command of LaTeX.
@@ -112,11 +126,11 @@ impl Comparison {
         text
     }
 
-    /// What the figures are of, in a sentence.
+    /// What the figures are of, in sentences.
     #[must_use]
     pub fn basis(&self) -> String {
         let seeds = |n: usize| if n == 1 { "1 seed".to_owned() } else { format!("{n} seeds") };
-        match self.resampled {
+        let mut text = match self.resampled {
             Resampled::Scenarios(n) => format!(
                 "Paired over {} runs of {n} scenarios that all {} planners had; scenarios weigh the same; intervals of 95 % by resampling scenarios.",
                 self.common,
@@ -127,46 +141,114 @@ impl Comparison {
                 seeds(n),
                 self.planners.len()
             ),
+        };
+        let has_goal = self.has_row("success");
+        let of_arrivals: Vec<String> =
+            OF_ARRIVALS.iter().filter(|id| has_goal && self.has_row(id)).map(|id| spaced(id)).collect();
+        if !of_arrivals.is_empty() {
+            text.push_str(&format!(" Of arrivals only: {}.", of_arrivals.join(", ")));
         }
+        if !self.unpaired.is_empty() {
+            let names: Vec<String> = self.unpaired.iter().map(|metric| spaced(metric.id)).collect();
+            text.push_str(&format!(
+                " Not compared, because no run has a value of every planner: {}.",
+                names.join(", ")
+            ));
+        }
+        let seldom: Vec<&str> = self
+            .planners
+            .iter()
+            .zip(&self.seldom)
+            .filter(|(_, seldom)| **seldom)
+            .map(|(name, _)| name.as_str())
+            .collect();
+        if !seldom.is_empty() {
+            text.push_str(&format!(
+                " Never best except in success, because of fewer arrivals than {:.0} % of those of the planner with the most: {}.",
+                LEAST_ARRIVALS * 100.0,
+                seldom.join(", ")
+            ));
+        }
+        text
     }
 
-    /// The figures as a table of LaTeX (package `booktabs`): a row per metric, a column per planner, bold where a planner is best in
-    /// at least 95 % of the resamples.
+    fn has_row(&self, id: &str) -> bool {
+        self.rows.iter().any(|row| row.metric.id == id)
+    }
+
+    /// Caption of the table of LaTeX: true of every row.
+    fn caption(&self) -> String {
+        let column = match self.resampled {
+            Resampled::Scenarios(_) => {
+                "Column n: runs of a row, those in which every planner has a value, with the number of their scenarios in brackets."
+            }
+            Resampled::Seeds(_) => "Column n: runs of a row, those in which every planner has a value.",
+        };
+        format!(
+            "{} {column} Runs realised and runs without a result are of all runs of a planner, paired or not. Bold: best in at least {:.0} % of the resamples.",
+            self.basis(),
+            MARKED * 100.0
+        )
+    }
+
+    /// The figures as a table of LaTeX (package `booktabs`): a row per metric with the runs that it is of, a column per planner, bold for
+    /// [`Row::best`].
     #[must_use]
     pub fn latex(&self) -> String {
-        let columns = "l".to_owned() + &"r".repeat(self.planners.len());
-        let head: Vec<String> = self.planners.iter().map(|planner| tex(planner.as_str())).collect();
+        let columns = "lr".to_owned() + &"r".repeat(self.planners.len());
+        let dagger = |seldom: bool| if seldom { "$^\\dagger$" } else { "" };
+        let names = self.planners.iter().zip(&self.seldom);
+        let head: Vec<String> = names.map(|(name, seldom)| tex(name.as_str()) + dagger(*seldom)).collect();
+        let note = if self.seldom.contains(&true) {
+            format!(" {}: too few arrivals to be marked.", dagger(true))
+        } else {
+            String::new()
+        };
         let mut text = format!(
-            "% Needs \\usepackage{{booktabs}}.\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\begin{{tabular}}{{{columns}}}\n\\toprule\nMetric & {} \\\\\n\\midrule\n",
-            tex(&self.basis()),
+            "% Needs \\usepackage{{booktabs}}.\n\\begin{{table}}\n\\centering\n\\caption{{{}}}\n\\begin{{tabular}}{{{columns}}}\n\\toprule\nMetric & n & {} \\\\\n\\midrule\n",
+            tex(&self.caption()) + &note,
             head.join(" & ")
         );
         let outcome = |name: &str, of: &dyn Fn(&super::Outcome) -> usize| {
             let cells: Vec<String> = self.outcomes.iter().map(|one| format!("{} of {}", of(one), one.runs)).collect();
-            format!("{name} & {} \\\\\n", cells.join(" & "))
+            format!("{name} & & {} \\\\\n", cells.join(" & "))
         };
         text.push_str(&outcome("runs realised $\\uparrow$", &super::Outcome::realised));
         text.push_str(&outcome("runs without a result $\\downarrow$", &|one| one.without_result));
         text.push_str("\\midrule\n");
         for row in &self.rows {
-            text.push_str(&format!("{} & {} \\\\\n", heading(row.metric), self.cells(row).join(" & ")));
+            let cells = cells(row).join(" & ");
+            text.push_str(&format!("{} & {} & {cells} \\\\\n", heading(row.metric), self.runs_of(row)));
         }
         text.push_str("\\bottomrule\n\\end{tabular}\n\\end{table}\n");
         text
     }
 
-    /// The cells of a metric, by planner.
-    fn cells(&self, row: &Row) -> Vec<String> {
-        let best = |place: usize| {
-            row.order.as_ref().and_then(|order| order.best.get(place)).is_some_and(|share| *share >= 0.95)
-        };
-        let cell = |(place, mean): (usize, &super::Mean)| {
-            let ends = mean.interval.map_or_else(String::new, |(low, high)| format!(" [{low:.2}, {high:.2}]"));
-            let text = format!("{:.2}{ends}", mean.estimate);
-            if best(place) { format!("\\textbf{{{text}}}") } else { text }
-        };
-        row.means.iter().enumerate().map(cell).collect()
+    /// The runs of a row, with the number of their scenarios where those are resampled.
+    fn runs_of(&self, row: &Row) -> String {
+        let scenarios = row.means.first().map_or(0, |mean| mean.parts.len());
+        match self.resampled {
+            Resampled::Scenarios(_) => format!("{} ({scenarios})", row.runs),
+            Resampled::Seeds(_) => row.runs.to_string(),
+        }
     }
+}
+
+/// The cells of a metric, by planner.
+fn cells(row: &Row) -> Vec<String> {
+    let (best, decimals) = (row.best(), row.decimals());
+    let cell = |(place, mean): (usize, &super::Mean)| {
+        let ends =
+            mean.interval.map_or_else(String::new, |(low, high)| format!(" [{low:.decimals$}, {high:.decimals$}]"));
+        let text = format!("{:.decimals$}{ends}", mean.estimate);
+        if best == Some(place) { format!("\\textbf{{{text}}}") } else { text }
+    };
+    row.means.iter().enumerate().map(cell).collect()
+}
+
+/// Name of a metric in words.
+fn spaced(id: &str) -> String {
+    id.replace('_', " ")
 }
 
 #[cfg(test)]
@@ -194,12 +276,71 @@ mod tests {
         let found = compare(&entries(&all), &names(&["near", "wide"])).unwrap();
         let text = found.latex();
         let line = text.lines().find(|line| line.starts_with("human distance min")).unwrap();
-        let (near, wide) = line.split_once(" & ").unwrap().1.split_once(" & ").unwrap();
+        let cells: Vec<&str> = line.split(" & ").collect();
+        let [_, _, near, wide] = cells[..] else { panic!("{line}") };
         assert!(wide.starts_with("\\textbf{") && !near.contains("textbf"), "{line}");
         assert!(line.contains("[m] $\\uparrow$"), "{line}");
         assert!(text.contains("resampling scenarios"), "{text}");
         assert_eq!(tex("a_b & 5 % \\x"), "a\\_b \\& 5 \\% \\textbackslash{}x");
         assert_eq!(text.matches("\\begin").count(), text.matches("\\end").count());
+    }
+
+    #[test]
+    fn every_row_of_latex_says_of_how_many_runs_it_is() {
+        let mut all = batch();
+        for one in &mut all {
+            let unseen = one.scenario == "b" && one.planner.as_str() == "wide";
+            for metric in &mut one.report.as_mut().unwrap().metrics {
+                let is_unseen = unseen && metric.id == "ttc_min";
+                metric.value = if is_unseen { None } else { metric.value.or(Some(1.0)) };
+            }
+        }
+        let found = compare(&entries(&all), &names(&["near", "wide"])).unwrap();
+        let text = found.latex();
+        let n = |name: &str| {
+            let line = text.lines().find(|line| line.starts_with(name)).unwrap();
+            line.split(" & ").nth(1).unwrap().to_owned()
+        };
+        for row in &found.rows {
+            let scenarios = row.means[0].parts.len();
+            assert_eq!(n(&spaced(row.metric.id)), format!("{} ({scenarios})", row.runs), "{text}");
+        }
+        assert_eq!((n("human distance min").as_str(), n("ttc min").as_str()), ("9 (3)", "6 (2)"));
+        let cells = |line: &str| line.matches('&').count();
+        let mut figures = text.lines().filter(|line| line.ends_with("\\\\"));
+        assert!(figures.all(|line| cells(line) == 3), "{text}");
+        assert!(
+            text.contains("Column n: runs of a row") && text.contains("all runs of a planner, paired or not"),
+            "{text}"
+        );
+        assert!(text.contains("Of arrivals only: time to goal, path length"), "{text}");
+    }
+
+    #[test]
+    fn latex_names_the_planner_that_is_not_marked_for_lack_of_arrivals() {
+        let mut all = batch();
+        for one in &mut all {
+            let arrived = if one.planner.as_str() == "near" { 0.0 } else { 1.0 };
+            let metrics = &mut one.report.as_mut().unwrap().metrics;
+            metrics
+                .iter_mut()
+                .filter(|it| it.id == "arrived" || it.id == "success")
+                .for_each(|it| it.value = Some(arrived));
+        }
+        let text = compare(&entries(&all), &names(&["near", "wide"])).unwrap().latex();
+        assert!(text.contains("Metric & n & near$^\\dagger$ & wide \\\\"), "{text}");
+        assert!(text.contains("of the planner with the most: near.") && text.contains("too few arrivals"), "{text}");
+        let marked: Vec<&str> = text.lines().filter(|line| line.contains("\\textbf")).collect();
+        assert!(marked.iter().all(|line| line.starts_with("success")), "{marked:?}");
+    }
+
+    #[test]
+    fn units_with_powers_are_set_as_mathematics() {
+        assert_eq!(heading(crate::metrics::sheet("jerk_mean").unwrap()), "jerk mean [m/s$^{3}$] $\\downarrow$");
+        assert_eq!(powers("1/m^2"), "1/m$^{2}$");
+        assert_eq!(powers("m^2/s"), "m$^{2}$/s");
+        assert_eq!(powers("%"), "\\%");
+        assert!(crate::metrics::sheets().all(|sheet| !heading(sheet).contains("textasciicircum")));
     }
 
     #[test]

@@ -49,6 +49,6 @@ pub use verdict::{Ruling, rule};
 
 pub use gaps::Gaps;
 pub(crate) use gaps::{by_name, encounter_gaps};
-pub(crate) use since::since;
-pub(crate) use steps::step_times;
+pub use since::{Since, since};
+pub use steps::step_times;
 pub(crate) use verdict::ruling_of_played;

@@ -11,7 +11,7 @@ use crate::fidelity::windows::Mark;
 
 /// When a reason first holds, with what it is in words.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Since {
+pub struct Since {
     t: f64,
     phrase: Option<String>,
 }
@@ -22,7 +22,7 @@ impl Since {
 
     /// When the reason first holds, s; negative infinity where there is none.
     #[must_use]
-    pub(crate) const fn secs(&self) -> f64 {
+    pub const fn secs(&self) -> f64 {
         self.t
     }
 
@@ -73,7 +73,7 @@ impl Since {
 ///
 /// # Errors
 /// The finding that the reason never came.
-pub(crate) fn since(signals: &Signals<'_>, human: HumanId, of: impl Fn(&Rule) -> bool) -> Result<Since, Finding> {
+pub fn since(signals: &Signals<'_>, human: HumanId, of: impl Fn(&Rule) -> bool) -> Result<Since, Finding> {
     let Some(person) = signals.evidence.proposal.and_then(|proposal| proposal.human(human)) else {
         return Ok(Since::START);
     };

@@ -118,7 +118,7 @@ pub(super) fn step(signals: &Signals<'_>, human: HumanId, rule: &Rule, within_s:
 }
 
 /// From when to when a step is done; `None` where it is not.
-pub(crate) fn step_times(signals: &Signals<'_>, human: HumanId, rule: &Rule) -> Option<(f64, f64)> {
+pub fn step_times(signals: &Signals<'_>, human: HumanId, rule: &Rule) -> Option<(f64, f64)> {
     let reason_s = first_reason(signals, human, &rule.when).ok()?;
     let begun_s = match rule.gesture {
         Some(gesture) => says(signals, human, (rule, gesture), reason_s),

@@ -27,23 +27,33 @@ pub struct Ruling {
 /// Rules on the clauses, and on what the request asks for beyond them. `reference` is the ruling on the clauses alone of the
 /// same scenario with the reference robot, if known.
 ///
-/// A run that shows all its clauses is `invalid` while a wish of the request was not read or is not played, and nobody has waived it: nothing is
-/// realised by leaving a wish out. Verdicts that tell of what was played (`contradicted`, `not_triggered`,
+/// A run that shows all its clauses is `invalid` while a wish of the request was not seen: it was not read or is not played and nobody has
+/// waived it, or a clause of it cannot be judged. Nothing is realised by leaving a wish out. Verdicts that tell of what was played (`contradicted`, `not_triggered`,
 /// `robot_prevented`) take precedence.
 #[must_use]
 pub fn rule(evidence: &Evidence<'_>, judged: &Judged, gaps: &Gaps, reference: Option<Verdict>) -> Ruling {
     let ruling = ruling_of_played(evidence, judged, gaps, reference);
-    let wishes = missing(evidence);
-    let count = match wishes.len() {
+    let absent = missing(evidence);
+    let count = match absent.len() {
         1 => "1 wish is not in this run".to_owned(),
         n => format!("{n} wishes are not in this run"),
     };
-    if !matches!(ruling.verdict, Verdict::Realised | Verdict::RealisedLate) || wishes.is_empty() {
-        let text = format!("{}{}{}", ruling.text, after(&format!(" · {count}: "), &wishes), waived(evidence));
-        return Ruling { text, ..ruling };
+    let absent = after(&format!("{count}: "), &absent);
+    let is_realised = matches!(ruling.verdict, Verdict::Realised | Verdict::RealisedLate);
+    // In a run that shows all its clauses a wish is unseen for lack of a judgment alone.
+    let unjudged = if is_realised { unseen(evidence, judged) } else { Vec::new() };
+    let count = match unjudged.len() {
+        1 => "1 wish cannot be judged".to_owned(),
+        n => format!("{n} wishes cannot be judged"),
+    };
+    let unjudged = after(&format!("{count}: "), &unjudged);
+    let gone: Vec<String> = [absent, unjudged].into_iter().filter(|text| !text.is_empty()).collect();
+    if is_realised && !gone.is_empty() {
+        let text = format!("{} · {}{}", gone.join(" · "), ruling.text, waived(evidence));
+        return Ruling { verdict: Verdict::Invalid, text, score: 0.0 };
     }
-    let text = format!("{count}: {} · {}{}", named(&wishes), ruling.text, waived(evidence));
-    Ruling { verdict: Verdict::Invalid, text, score: 0.0 }
+    let text = [vec![ruling.text], gone].concat().join(" · ") + &waived(evidence);
+    Ruling { text, ..ruling }
 }
 
 /// Rules on the clauses alone, whatever of the request has none.
@@ -144,9 +154,10 @@ fn tally(evidence: &Evidence<'_>, judged: &Judged) -> String {
     let (late, unjudged) = (count(Standing::Late), judged.unjudged().count());
     let seen = count(Standing::Holds) + late;
     let mut text = format!("{seen} of {} setup clauses", judged.deciding().count() + unjudged);
-    let (wishes, all) = wishes(evidence, judged);
-    if all > 0 {
-        text = format!("{wishes} of {all} wishes seen, by {text}");
+    let wishes = wishes(evidence, judged);
+    if !wishes.is_empty() {
+        let shown = wishes.values().filter(|seen| **seen).count();
+        text = format!("{shown} of {} wishes seen, by {text}", wishes.len());
     }
     if late > 0 {
         text.push_str(&format!(", {late} of them late"));
@@ -157,10 +168,15 @@ fn tally(evidence: &Evidence<'_>, judged: &Judged) -> String {
     text
 }
 
-/// How many wishes of the request were seen, and how many there are of which clauses tell: facts that one piece of a text became are
-/// one wish, and so are those of one line of a form. A wish is seen where every clause that decides of it was.
-fn wishes(evidence: &Evidence<'_>, judged: &Judged) -> (usize, usize) {
-    let Some(reading) = evidence.reading else { return (0, 0) };
+/// The wishes that were not seen, in the words of the request.
+fn unseen(evidence: &Evidence<'_>, judged: &Judged) -> Vec<String> {
+    wishes(evidence, judged).into_iter().filter(|(_, seen)| !seen).map(|(wish, _)| wish.to_owned()).collect()
+}
+
+/// The wishes of the request that clauses tell of, and whether each was seen: facts that one piece of a text became are one wish, and so
+/// are those of one line of a form. A wish is seen where every clause that has to hold for it was judged and holds.
+fn wishes<'e>(evidence: &Evidence<'e>, judged: &Judged) -> BTreeMap<&'e str, bool> {
+    let Some(reading) = evidence.reading else { return BTreeMap::new() };
     let told = |fact: &str| {
         let became = |statement: &&Statement| matches!(&statement.became, Became::Read { facts, .. } if facts.iter().any(|id| id == fact));
         reading.statements.iter().find(became).map(|statement| &*statement.quote)
@@ -172,7 +188,7 @@ fn wishes(evidence: &Evidence<'_>, judged: &Judged) -> (usize, usize) {
         let wish = told(&fact.id).unwrap_or(if fact.quote.is_empty() { &*fact.id } else { &*fact.quote });
         *found.entry(wish).or_insert(true) &= seen;
     }
-    (found.values().filter(|seen| **seen).count(), found.len())
+    found
 }
 
 /// First and last time of the evidence of deciding clauses.

@@ -206,10 +206,10 @@ fn disturbance(robot: &Track, a: &Track, b: &Track) -> Series {
 mod tests {
     use std::f64::consts::PI;
 
+    use crate::cases::{group_of, proposal};
     use crate::evidence::Evidence;
     use crate::fixture::{Walk, recording};
     use crate::metrics::tests::value_of;
-    use crate::scenarios::{group_of, proposal};
 
     #[test]
     fn a_robot_through_the_middle_of_four_is_as_deep_as_the_circle_and_itself() {

@@ -264,10 +264,6 @@ const ON_GRID: u32 = 2;
 const REVISED: &[(&str, u32)] =
     &[("ttc_p5", 3), ("drac_max", 3), ("post_encroachment_time", 3), ("path_irregularity", 3), ("freezing_events", 3)];
 
-/// How distances are meant throughout, for tables that are read by others: between surfaces, not centers. Tools differ, so every
-/// table says it.
-pub const DISTANCE_CONVENTION: &str = "surface_clearance";
-
 /// How values of several runs become one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Aggregation {

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 
 use socrates_model::{AgentId, EventKind, Gesture, Recording};
 
+use crate::cases::{group_of, proposal};
 use crate::evidence::Evidence;
 use crate::fidelity::Signals;
 use crate::fixture::{Walk, event, floor, paths, recording};
 use crate::metrics::{Scene, measure, sheets};
-use crate::scenarios::{group_of, proposal};
 use crate::tracks::Tracks;
 
 /// Metrics that the scene has no value for, with the reason; the README has the list too.

@@ -7,8 +7,7 @@
 //!   portable,   the reference    large crowds,     velocities     as recorded
 //!   one by one  library, bit     an error bound    that avoid
 //!        │       for bit              │             collisions        │
-//!        │          │                 │                │              │
-//!        │        trace               │                └── mix ───────┤
+//!        │          │                 │                └── mix ───────┤
 //!        └──────────┴─────────────────┴──► people, one step later ◄───┘
 //! ```
 //!
@@ -52,7 +51,6 @@ pub mod orca;
 pub mod params;
 pub mod person;
 pub mod strict;
-pub mod trace;
 pub mod tracks;
 mod vector;
 pub mod walker;
@@ -65,4 +63,5 @@ pub use near::{Found, Near};
 pub use obstacle::{Segment, points_in_range};
 pub use params::{BadParams, CenterOrder, Params};
 pub use person::{Goal, Person};
+pub use vector::wrap;
 pub use walker::{Drive, Route, Walker};

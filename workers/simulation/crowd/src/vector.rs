@@ -29,7 +29,8 @@ pub(crate) fn left(v: &Vector2<f64>) -> Vector2<f64> {
 const FAR_RAD: f64 = 1e3;
 
 /// A sum or difference of two angles brought back into (-pi, pi].
-pub(crate) fn wrap(angle: f64) -> f64 {
+#[must_use]
+pub fn wrap(angle: f64) -> f64 {
     let mut turned = if angle.abs() > FAR_RAD { angle % TAU } else { angle };
     while turned > PI && turned.is_finite() {
         turned -= TAU;

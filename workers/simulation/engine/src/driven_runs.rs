@@ -4,14 +4,13 @@ use std::collections::BTreeMap;
 
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::{
-    AgentId, Command, EventKind, Gesture, HumanId, Observation, Point, Recording, Relation, RobotDriver, Vector,
+    AgentId, Command, EventKind, Gesture, HumanId, Keeper, Observation, Point, Recording, Relation, RobotDriver, Vector,
 };
 
 use crate::drive::Drivers;
 use crate::fixture::{Cast, Liner, hall, location, setup};
 use crate::gait::{A_MAX, TURN_WALKING, V_MAX};
 use crate::models::HumanModel;
-use crate::recorder::Keeper;
 use crate::run::Engine;
 use crate::setup::Setup;
 

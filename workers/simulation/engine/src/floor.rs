@@ -190,13 +190,3 @@ pub fn ray_segment(from: &Point, heading: &Vector, a: &Point, b: &Point) -> Opti
     let share = to_a.perp(heading) / across;
     (range >= 0.0 && (0.0..=1.0).contains(&share)).then_some(range)
 }
-
-/// Distance along a ray (unit heading) to a disc, m.
-#[must_use]
-pub fn ray_disc(from: &Point, heading: &Vector, center: &Point, radius_m: f64) -> Option<f64> {
-    let to = center - from;
-    let along = to.dot(heading);
-    let aside2 = to.norm_squared() - along * along;
-    let inside = radius_m * radius_m - aside2;
-    (inside >= 0.0 && along > 0.0).then(|| (along - inside.sqrt()).max(0.0))
-}

@@ -78,7 +78,7 @@ pub use driven::body_of;
 pub use floor::Floor;
 pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
 pub use models::HumanModel;
-pub use recorder::{Keeper, Onlooker, Recorder};
+pub use recorder::Recorder;
 pub use run::Engine;
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};
 pub use view::in_field_of_view;

@@ -2,44 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::{
-    AgentId, AgentState, Event, EventKind, HumanId, NodeId, Point, Recording, RecordingHeader, SimTime,
-};
+use socrates_model::{AgentId, AgentState, Event, EventKind, HumanId, NodeId, Onlooker, Point, SimTime};
 
 use crate::contacts::Touch;
-
-/// Whoever takes a run while it goes: who writes it down, who shows it. Nobody else keeps a tick.
-pub trait Onlooker {
-    /// Before tick 0.
-    fn announce(&mut self, header: &RecordingHeader);
-    /// One tick's states, in the header's order, and what happened at it.
-    fn tick(&mut self, states: &[AgentState], events: &[Event]);
-}
-
-/// Keeps a whole run in memory, for those who look at all of it at once.
-#[derive(Debug, Clone, Default)]
-pub struct Keeper(Option<Recording>);
-
-impl Keeper {
-    /// What was kept; `None` of a run that was never announced.
-    #[must_use]
-    pub fn recording(self) -> Option<Recording> {
-        self.0
-    }
-}
-
-impl Onlooker for Keeper {
-    fn announce(&mut self, header: &RecordingHeader) {
-        self.0 = Some(Recording { header: header.clone(), frames: Vec::new(), events: Vec::new() });
-    }
-
-    fn tick(&mut self, states: &[AgentState], events: &[Event]) {
-        if let Some(recording) = &mut self.0 {
-            recording.frames.extend_from_slice(states);
-            recording.events.extend_from_slice(events);
-        }
-    }
-}
 
 /// A touch counts anew after so long without, s.
 const TOUCH_AGAIN_S: f64 = 1.0;

@@ -5,7 +5,8 @@ use socrates_maps::openings::Enclosures;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Event, EventKind, Fault, HumanId, Recording, RecordingHeader, RobotDriver, SimTime,
+    Action, AgentId, AgentState, Event, EventKind, Fault, HumanId, Onlooker, Recording, RecordingHeader, RobotDriver,
+    SimTime,
 };
 
 use crate::advance::Desk;
@@ -16,7 +17,7 @@ use crate::floor::Floor;
 use crate::human::{DoorOnWay, Human, LEAVES, leaf_name, leaf_number};
 use crate::models::DRIVEN_LEAF_NUMBER;
 use crate::near::Near;
-use crate::recorder::{Onlooker, Recorder};
+use crate::recorder::Recorder;
 use crate::rendezvous::{self, Timing};
 use crate::robot::Robot;
 use crate::script::Script;

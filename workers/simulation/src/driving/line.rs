@@ -152,6 +152,7 @@ pub fn told(why: &LinkError) -> String {
         | LinkError::Decode { .. }
         | LinkError::Incompatible { .. }
         | LinkError::Refused { .. }
+        | LinkError::OtherReign { .. }
         | LinkError::Absent { .. }
         | LinkError::Keys { .. }
         | LinkError::Closed

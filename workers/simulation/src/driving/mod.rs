@@ -18,12 +18,11 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use socrates_engine::Onlooker;
 pub use socrates_engine::body_of;
 use socrates_model::driver::{MissionPerson, Told};
 use socrates_model::{
-    AgentId, AgentState, Command, Event, EventKind, Fault, FaultCode, HumanId, Observation, Point, RecordingHeader,
-    RobotDriver, RunId, Where,
+    AgentId, AgentState, Command, Event, EventKind, Fault, FaultCode, HumanId, Observation, Onlooker, Point,
+    RecordingHeader, RobotDriver, RunId, Where,
 };
 use socrates_planners::Mission;
 

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
-use socrates_engine::{Keeper, Setup};
+use socrates_engine::Setup;
 use socrates_kit::Cancel;
 use socrates_link::{Bus, MemoryBus};
 use socrates_model::driver::Commands;
 use socrates_model::lockstep::{Step, command_bytes};
-use socrates_model::{AgentId, Command, Fault, FaultCode, HumanId, PersonModel, PlannerName, Point, Recording};
+use socrates_model::{AgentId, Command, Fault, FaultCode, HumanId, Keeper, PersonModel, PlannerName, Point, Recording};
 use tokio::runtime::Handle;
 
 use super::tests::{Answer, guest, patient, runtime, steady};

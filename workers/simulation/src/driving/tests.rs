@@ -5,12 +5,11 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use serde_json::Value;
-use socrates_engine::Keeper;
 use socrates_kit::Cancel;
 use socrates_link::{AliveToken, Bus, MemoryBus, keys};
 use socrates_model::driver::Commands;
 use socrates_model::lockstep::{Step, command_bytes, gives_up_bytes, read_step};
-use socrates_model::{Command, Digest, Fault, FaultCode, Gesture};
+use socrates_model::{Command, Digest, Fault, FaultCode, Gesture, Keeper};
 use tokio::runtime::{Builder, Handle, Runtime};
 
 use super::{Again, Drive, Mode, OverBus};

@@ -6,7 +6,7 @@ use socrates_stream::csv::joined;
 
 use super::super::door::Door;
 use super::poll::{Held, Repeat};
-use crate::exit::Complaint;
+use crate::exit::Diagnostic;
 
 /// Name of the table of facts.
 pub(in super::super) const FILE: &str = "second_opinion.csv";
@@ -129,7 +129,7 @@ pub(super) fn answers_head() -> String {
 }
 
 /// Reads a table of facts; everything that is wrong with it is told at once.
-pub(in super::super) fn read(text: &str, file: &str) -> Result<Vec<Row>, Complaint> {
+pub(in super::super) fn read(text: &str, file: &str) -> Result<Vec<Row>, Diagnostic> {
     let mut door = Door::default();
     let mut found: Vec<Row> = Vec::new();
     let mut known: BTreeSet<(String, String)> = BTreeSet::new();

@@ -1,7 +1,9 @@
 use super::*;
 use crate::fox::facts::Door;
-use foxglove::Decode as _;
-use foxglove::messages::{FrameTransforms, Log, PointCloud, SceneUpdate};
+use foxglove::messages::{
+    FrameTransforms, Grid as Map, LaserScan, Log, Odometry, PointCloud, PosesInFrame, SceneUpdate,
+};
+use foxglove::{Decode, Encode};
 use socrates_model::grid::{Cell, Grid};
 use socrates_model::recording::AgentInfo;
 use socrates_model::{AgentId, Pose};
@@ -114,6 +116,43 @@ fn shapes_are_sent_when_somebody_comes_or_goes_and_else_never() {
     assert_eq!(ids(&scene), ["goal", "door_ward", "robot", "human_1", "human_2"]);
     let fourth = show(&mut stage, 15, &states(2, gone), wanted);
     assert_eq!(ids(&SceneUpdate::decode(payload(&fourth, Topic::Scene)).unwrap()).len(), 4);
+}
+
+#[test]
+fn messages_are_the_bytes_that_the_library_of_foxglove_writes() {
+    fn again<M: Decode + Encode>(payload: &Bytes) -> Vec<u8> {
+        let read = M::decode(payload.clone()).unwrap_or_else(|_| panic!("{payload:?}"));
+        let mut out = Vec::new();
+        read.encode(&mut out).unwrap_or_else(|_| panic!("{payload:?}"));
+        out
+    }
+    let mut stage = stage(&everybody(300));
+    let mut there = states(300, |agent| flags(agent, (agent % 3 == 1).then_some(Gesture::Wait), 1));
+    (there[0].vx, there[1].y, there[2].yaw, there[3].x) = (-0.0, -0.0, -0.0, -7.25);
+    (there[4].vx, there[5].yaw) = (f64::NAN, 2.5);
+    let ranges = [0.0, 2.5, f32::INFINITY];
+    let offers = stage.offers();
+    let frame = Frame { time: SimTime::at_tick(1_234), states: &there, scan: Some(&ranges) };
+    let mut messages = stage.frame(&frame, offers);
+    let door = EventKind::Door { door: "ward".to_owned(), open: true };
+    messages.extend(stage.event(&Event { time: SimTime::at_tick(1_235), kind: door }, "opens", offers));
+    messages.extend([Topic::Map, Topic::Plan].into_iter().flat_map(|topic| stage.latched(topic)));
+    for message in &messages {
+        let again = match message.topic {
+            Topic::Map => again::<Map>(&message.payload),
+            Topic::Scene | Topic::Labels => again::<SceneUpdate>(&message.payload),
+            Topic::Frames => again::<FrameTransforms>(&message.payload),
+            Topic::Crowd => again::<PointCloud>(&message.payload),
+            Topic::Scan => again::<LaserScan>(&message.payload),
+            Topic::Plan => again::<PosesInFrame>(&message.payload),
+            Topic::Odometry => again::<Odometry>(&message.payload),
+            Topic::Events => again::<Log>(&message.payload),
+            Topic::Agents => continue,
+        };
+        assert_eq!(message.payload, again, "{:?}", message.topic);
+    }
+    let shown: Topics = messages.iter().map(|message| message.topic).collect();
+    assert_eq!(shown, offers);
 }
 
 #[test]

@@ -63,14 +63,6 @@ impl Crowd {
         self.routes.iter().map(Route::reached)
     }
 
-    /// Sends the person at `index` along another route; no effect where there is no such person.
-    pub fn set_route(&mut self, index: usize, route: Route) {
-        if let (Some(own), Some(person)) = (self.routes.get_mut(index), self.people.get_mut(index)) {
-            person.goal = route.goal();
-            *own = route;
-        }
-    }
-
     /// The forces on everybody in the present state, in the order given.
     ///
     /// A part that is not a number counts as 0, as in [`crate::forces()`].

@@ -6,3 +6,6 @@ mod properties;
 mod reference;
 mod scene;
 mod strict;
+// Scenes in, trajectories out: a tool for developers, which `socrates-dev` has as well.
+#[path = "../../../../../tests/dev/src/crowd_trace/mod.rs"]
+mod trace;

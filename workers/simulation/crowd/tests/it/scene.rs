@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
+use crate::trace::{Scene, SceneError, trajectory, write_forces};
 use socrates_crowd::cross::SplitMix64;
 use socrates_crowd::strict::Model;
-use socrates_crowd::trace::{Scene, SceneError, trajectory, write_forces};
 
 const AGENT: &str = r#"{"id":1,"x":0,"y":0.5,"vx":0,"vy":0,"yaw":0,"radius":0.35,"desired_velocity":1.2,"group_id":-1,
  "cyclic_goals":true,"teleoperated":false,"linear_velocity":0,"angular_velocity":0,"goals":[[4,0,0.3],[0,0,0.3]]}"#;

@@ -6,9 +6,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::trace::{Scene, forces_table, trajectory};
 use socrates_crowd::cross::{DT_S, WALL_RANGE_M, cross};
 use socrates_crowd::strict::{Crowd, Model};
-use socrates_crowd::trace::{Scene, forces_table, trajectory};
 use socrates_tests::skip::shared;
 
 #[track_caller]

@@ -5,6 +5,15 @@ use socrates_model::{Cell, Grid};
 use super::*;
 use crate::fixture;
 
+/// Distance along a ray (unit heading) to a disc, m.
+fn ray_disc(from: &Point, heading: &Vector, center: &Point, radius_m: f64) -> Option<f64> {
+    let to = center - from;
+    let along = to.dot(heading);
+    let aside2 = to.norm_squared() - along * along;
+    let inside = radius_m * radius_m - aside2;
+    (inside >= 0.0 && along > 0.0).then(|| (along - inside.sqrt()).max(0.0))
+}
+
 #[test]
 fn the_rough_bearing_is_within_its_slack() {
     for step in 0..3600_u32 {
@@ -42,7 +51,7 @@ fn the_floor_and_its_closed_doors_and_people_are_one_scan() {
         let angle = from.yaw + (beam as f64).to_radians();
         let wall = floor.ray_m(&from.point(), angle, 12.0);
         let heading = Vector::new(libm::cos(angle), libm::sin(angle));
-        let body = crate::floor::ray_disc(&from.point(), &heading, &people[0].center, 0.3);
+        let body = ray_disc(&from.point(), &heading, &people[0].center, 0.3);
         assert!((range - body.unwrap_or(12.0).min(wall)).abs() < 1e-9, "beam {beam}: {range}");
     }
 }

@@ -7,15 +7,34 @@ use socrates_model::PlaceClass;
 
 use crate::common::scenario::{look_through, place, relations, run, scenario, ways};
 
+/// Number of ways per way that the gate plays.
+const SAMPLE: usize = 37 * 8;
+
 #[test]
-fn on_every_shipped_location_the_reference_arrives_and_meets_who_it_should() {
-    let (every, offset) = (sampling("RUNS_EVERY", 37), sampling("RUNS_OFFSET", 0));
+fn on_a_few_ways_of_every_shipped_location_the_reference_arrives_and_meets_everybody() {
+    look_at(SAMPLE, 0.0);
+}
+
+#[test]
+#[ignore = "sweep: one in 37 ways of every shipped location, every relation, at most 5 % with troubles"]
+fn on_every_shipped_location_the_reference_arrives_and_meets_everybody() {
+    let berths = look_at(37, 0.05);
+    // Nine of ten runs keep 0.28 m between robot and person; a person in a doorway is passed nearer.
+    for relation in ["ahead", "frontal", "crossing"] {
+        assert!(berths[relation] >= 0.28, "{relation}: {berths:?}");
+    }
+    // A person who overtakes has the space that a narrow floor leaves beside the robot.
+    assert!(berths["behind"] >= 0.2, "{berths:?}");
+}
+
+/// Runs on one way in `every`, of which at most this share may have troubles; the lower decile of the distances kept, m, by relation.
+fn look_at(every: usize, share: f64) -> BTreeMap<&'static str, f64> {
     let (mut runs, mut bad) = (0_u32, 0_u32);
     let mut lines = Vec::new();
-    let mut per: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
+    let mut per: BTreeMap<&'static str, Vec<(f64, f64)>> = BTreeMap::new();
     for name in socrates_maps::shipped::names() {
         let location = place(name);
-        for way in ways(&location, every, offset) {
+        for way in ways(&location, every, 0) {
             for (relation, cast, node) in relations(&location, &way) {
                 let made = scenario(&location, way.clone(), vec![cast], &[Some(node.clone())], vec![], false);
                 // One behind the other they pass the node one after the other; people let the robot out of a room first.
@@ -35,7 +54,7 @@ fn on_every_shipped_location_the_reference_arrives_and_meets_who_it_should() {
         }
     }
     println!("{}", lines.join("\n"));
-    let mut berths: BTreeMap<&str, f64> = BTreeMap::new();
+    let mut berths: BTreeMap<&'static str, f64> = BTreeMap::new();
     for (relation, all) in &mut per {
         let mut near: Vec<f64> = all.iter().map(|(near, _)| *near).collect();
         let mut gaps: Vec<f64> = all.iter().map(|(_, gap)| *gap).collect();
@@ -54,17 +73,6 @@ fn on_every_shipped_location_the_reference_arrives_and_meets_who_it_should() {
         );
     }
     println!("{bad} of {runs} runs with troubles");
-    assert!(runs > 30);
-    assert!(f64::from(bad) <= 0.05 * f64::from(runs), "{bad} of {runs}");
-    // Nine of ten runs keep 0.28 m between robot and person; whoever stands in a doorway is passed nearer.
-    for relation in ["ahead", "frontal", "crossing"] {
-        assert!(berths[relation] >= 0.28, "{relation}: {berths:?}");
-    }
-    // Who overtakes has what a narrow floor leaves beside the robot.
-    assert!(berths["behind"] >= 0.2, "{berths:?}");
-}
-
-/// A number from the environment, to look at more or other runs than the test takes by itself.
-fn sampling(name: &str, usual: usize) -> usize {
-    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+    assert!(runs > 10 && f64::from(bad) <= share * f64::from(runs), "{bad} of {runs}: {}", lines.join("\n"));
+    berths
 }

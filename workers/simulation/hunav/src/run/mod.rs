@@ -20,11 +20,12 @@ use std::collections::BTreeMap;
 
 use socrates_bt::{Tree, TreeState};
 use socrates_crowd::tracks::{Track, Tracks};
-use socrates_engine::{Keeper, Onlooker, Recorder, Touch};
+use socrates_engine::{Recorder, Touch};
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    AgentId, AgentState, EventKind, Gesture, Grid, PlannerName, Recording, RecordingHeader, RunId, SimTime,
+    AgentId, AgentState, EventKind, Gesture, Grid, Keeper, Onlooker, PlannerName, Recording, RecordingHeader, RunId,
+    SimTime,
 };
 
 pub use agent::HumanModel;
