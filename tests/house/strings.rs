@@ -94,18 +94,12 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("orchestrator/app/src/explain.rs", "about .split_inclusive", "lays the words of a page out in lines"),
     ("orchestrator/study/src/kit/legend.rs", "instructions .split", "lays an author's text out in paragraphs"),
     (
-        "tests/dev/src/fuzz.rs",
-        "text .contains",
-        "asks whether an error names its file, which is what people are to read there",
-    ),
-    (
         "bus/stream/src/ros/schema.rs",
         "kind .split_once",
         "the door itself: a type as a definition of messages writes it",
     ),
     ("bus/stream/src/ros/tracks.rs", "name .split", "the door itself: the parts of a topic's name, as a bag writes it"),
     ("bus/link/src/envelope.rs", "kind ==", "the door itself: of which kind the message is that its bytes hold"),
-    ("tests/dev/src/fuzz/doors.rs", "name ==", "the name of a door is a constant of that file"),
     ("prompts/llm/src/wire/anthropic.rs", "kind ==", "the door itself: of which kind a block of a server's answer is"),
     (
         "workers/scoring/src/fidelity/setting.rs",

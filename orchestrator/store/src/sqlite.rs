@@ -111,7 +111,7 @@ impl SqliteStore {
         failure(&self.path, source)
     }
 
-    /// Writes down a start of an orchestrator by a number that no other has; gives the last [`STARTS`] of this store, this one among
+    /// Writes down a start of an orchestrator by a number that no other has; gives the last 64 starts of this store, this one among
     /// them. A worker that served one of them knows the jobs of this store, in this state or an earlier one.
     ///
     /// # Errors
