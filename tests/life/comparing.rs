@@ -50,7 +50,7 @@ fn planners_are_compared_over_the_same_runs_and_a_second_time_from_their_bundles
     assert_eq!(rows("compare.csv"), 1 + 4 * 2 * 2);
     assert!(rows("differences.csv") > 10);
     let paper = std::fs::read_to_string(out.join("compare.tex")).unwrap();
-    assert!(paper.contains("\\begin{tabular}{lrr}") && paper.contains("straight\\_line"), "{paper}");
+    assert!(paper.contains("\\begin{tabular}{lrrr}") && paper.contains("straight\\_line"), "{paper}");
     let film = std::fs::read_to_string(out.join("film.svg")).unwrap();
     assert!(film.contains("robot A") && film.contains("robot B") && !film.contains("orca"));
     let page = std::fs::read(out.join("compare.html")).unwrap();
