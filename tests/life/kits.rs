@@ -297,5 +297,5 @@ fn metrics_are_laid_beside_ratings_and_a_blind_search_is_refused() {
     assert!(rows.iter().all(|row| row["films"] == 12 || !row["note"].as_str().unwrap().is_empty()), "{found}");
     assert!(found["ceilings"][0]["one_against_others"].as_f64().is_some(), "{found}");
     let text = std::fs::read_to_string(at.join("correlations/correlations.txt")).unwrap();
-    assert!(text.contains("psi.AB: 12 films, 24 people"), "{text}");
+    assert!(text.starts_with("SIMULATED ANSWERS") && text.contains("psi.AB: 12 films, 24 simulated people"), "{text}");
 }
