@@ -73,8 +73,8 @@ fn search(
     let clearance_m = |cell: (usize, usize)| field.clearance_of_cell(cell.0, cell.1);
     cheapest_way((raster.width, raster.height), (start, goal), ahead, |here, next, cells| {
         let there = clearance_m(next);
-        let price = price(f64::midpoint(clearance_m(here), there), radius_m);
-        (there >= radius_m).then_some(cells * raster.resolution_m * price)
+        (there >= radius_m)
+            .then(|| cells * raster.resolution_m * price(f64::midpoint(clearance_m(here), there), radius_m))
     })
 }
 

@@ -45,7 +45,7 @@ impl Budgets {
         Self { total: number(&table["total"], "total"), room: number(&table["room"], "room"), rooms: rooms.collect() }
     }
 
-    /// What is wrong with the table or above it, given the lines of every room.
+    /// Faults of the table and rooms above it, given the lines of every room.
     fn broken(&self, found: &BTreeMap<String, usize>) -> Vec<String> {
         let mut broken = Vec::new();
         for room in self.rooms.keys().chain(found.keys()).collect::<BTreeSet<_>>() {

@@ -131,7 +131,7 @@ fn words(text: &str, line: usize) -> Vec<Spoken> {
     found
 }
 
-/// What a text says against the rules, each with its line.
+/// Breaches of the rules in a text, each with its line.
 fn broken(prose: &Prose) -> Vec<(Rule, usize, String)> {
     let spoken = words(&prose.text, prose.line);
     if prose.message && spoken.len() < MESSAGE {
@@ -227,7 +227,7 @@ fn lowered(old: &str, ratio: f64, found: &BTreeMap<String, Vec<Place>>) -> Strin
     text
 }
 
-/// What is above the ceilings, and where a ceiling can be lowered.
+/// Counts above the ceilings, and ceilings that can be lowered.
 fn compared(rows: &BTreeMap<String, Counts>, found: &BTreeMap<String, Vec<Place>>) -> (Vec<String>, Vec<String>) {
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (room, places) in found {

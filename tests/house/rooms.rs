@@ -57,7 +57,7 @@ fn is_program(room: &str, file: &str) -> bool {
     inside.starts_with("src/") || inside == "build.rs"
 }
 
-/// What one source holds; `program` says whether its code counts.
+/// Lines, prose and types of one source; `program` says whether its code counts.
 fn source(room: &str, file: &str, text: &str, tokens: &[Token<'_>], program: bool) -> Source {
     let (mut lines, mut prose, mut types) = (BTreeSet::new(), Vec::<Prose>::new(), Vec::new());
     let blank: Vec<bool> = text.lines().map(|line| line.trim().is_empty()).collect();

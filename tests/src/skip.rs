@@ -59,7 +59,7 @@ pub fn shared(path: &str) -> Option<PathBuf> {
 /// Installs something into a folder, one test at a time: tests of other processes wait for the lock beside the folder.
 ///
 /// # Errors
-/// What `install` says, or that the lock cannot be made.
+/// The reason of `install`, or that the lock cannot be made.
 pub fn alone<T>(folder: &Path, install: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     let path = folder.with_extension("lock");
     let lock = std::fs::File::create(&path).and_then(|file| file.lock().map(|()| file));

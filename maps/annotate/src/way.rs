@@ -83,8 +83,8 @@ pub(crate) fn way(floor: &Floor, from: &Spot, to: &Spot) -> Option<Vec<Spot>> {
     let ahead = |cell: Cell| (spot(cell) - spot(goal)).norm();
     let cells = cheapest_way((wide, tall), (start, goal), ahead, |_here, next, cells| {
         let clear_m = floor.raw_m(&spot(next));
-        let price = 1.0 + ((COMFORT_M - clear_m) / (COMFORT_M - LEAST_M)).clamp(0.0, 1.0);
-        (clear_m >= LEAST_M || next == goal).then_some(cells * floor.cell_m * price)
+        let price = || 1.0 + ((COMFORT_M - clear_m) / (COMFORT_M - LEAST_M)).clamp(0.0, 1.0);
+        (clear_m >= LEAST_M || next == goal).then(|| cells * floor.cell_m * price())
     })?;
     let mut path: Vec<Spot> = cells.into_iter().map(spot).collect();
     if let Some(last) = path.last_mut() {

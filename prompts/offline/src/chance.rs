@@ -9,11 +9,11 @@ use crate::story::{ReadRule, Story};
 const BEHIND_M: f64 = 3.0;
 /// In an aisle that only one gets through the two come so near to each other before one makes room, m.
 const FACES_M: f64 = 2.5;
-/// Somebody who stands at its place and walks on lets the robot come so near first, m.
+/// A person who stands at their place and walks on lets the robot come so near first, m.
 const MET_M: f64 = 2.8;
 /// The robot comes no nearer than this to whoever stands in its way, m.
 const STOPS_BEFORE_M: f64 = 1.1;
-/// Somebody who has to get past the robot before they can block it does so for so long at least, s.
+/// Minimum time for which a person blocks the robot that they had to get past first, s.
 const CATCHES_UP_S: f64 = 20.0;
 /// Where somebody waits for the robot to stop it stops before somebody this near, m, for so long, s.
 const STOPS: (f64, f64) = (4.0, 6.0);
@@ -36,11 +36,11 @@ pub(crate) fn settle(story: &mut Story) {
             let after: Vec<Trigger> = before
                 .iter()
                 .map(|trigger| match (trigger, relation) {
-                    // Somebody who walks ahead of the robot does not see it.
+                    // A person who walks ahead of the robot does not see it.
                     (Trigger::RobotVisible(m), Some(Relation::Ahead)) => Trigger::RobotNear(m.min(BEHIND_M)),
                     // Where only one gets through they have met before one of them goes back.
                     (Trigger::RobotVisible(m), _) if gives => Trigger::RobotVisible(m.min(FACES_M)),
-                    // Somebody who stands there and walks on has been met by then.
+                    // A person who stands there and walks on has been met by then.
                     (Trigger::RobotVisible(m), _) if leaves => Trigger::RobotVisible(m.min(MET_M)),
                     (Trigger::RobotNear(m), _) if leaves => Trigger::RobotNear(m.min(MET_M)),
                     (other, _) => other.clone(),

@@ -4,7 +4,7 @@ use socrates_model::{Action, Relation, Rule, Trigger};
 
 use crate::story::{Person, ReadRule};
 
-/// Somebody who gives the way free when asked to blocks it for so long at most, s.
+/// Maximum time for which a person blocks the way when they give it free on request, s.
 const ASKED_S: f64 = 20.0;
 
 /// Puts the rules of a person in an order in which each of them can run.
@@ -33,7 +33,7 @@ pub(crate) fn settle(person: &mut Person) {
         }
     }
     let answered = answer(&mut rules);
-    // Somebody who follows does so whenever nothing else is to be done; a follower walks on by following.
+    // A follower does so whenever nothing else is to be done; a follower walks on by following.
     let (following, mut others): (Vec<ReadRule>, Vec<ReadRule>) = rules
         .into_iter()
         .partition(|read| follows(&read.rule) && read.rule.for_s.is_none() && !(answered && read.waits_for_word()));

@@ -90,6 +90,17 @@ impl Office {
     fn knows(&self, asked: ReignId) -> bool {
         (1..=1 + self.reigns).any(|epoch| self.reign(epoch) == asked)
     }
+
+    /// The present reign and its id, and whether a question is answered in it.
+    fn admit(&mut self, ask: &Ask) -> (u64, ReignId, bool) {
+        let beaten = ask.key() == keys::BEAT && self.intruded;
+        self.beaten += u32::from(beaten);
+        let intruder = beaten && !self.beaten.is_multiple_of(3);
+        let known = asked_in(ask).is_none_or(|asked| self.knows(asked)) && !intruder;
+        self.disowned += u32::from(!known);
+        let reign = 1 + self.reigns;
+        (reign, self.reign(reign), known)
+    }
 }
 
 /// The reign that a question is for.
@@ -105,16 +116,7 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
         let mut all = bus.serve("rpc/*").await.unwrap();
         while let Some(ask) = all.next().await {
             let key = ask.key().to_owned();
-            let (reign, id, known) = {
-                let mut office = shared.lock().unwrap();
-                let reign = 1 + office.reigns;
-                let beaten = key == keys::BEAT && office.intruded;
-                office.beaten += u32::from(beaten);
-                let intruder = beaten && !office.beaten.is_multiple_of(3);
-                let known = asked_in(&ask).is_none_or(|asked| office.knows(asked)) && !intruder;
-                office.disowned += u32::from(!known);
-                (reign, office.reign(reign), known)
-            };
+            let (reign, id, known) = shared.lock().unwrap().admit(&ask);
             let ask = ask.in_reign(id);
             if !known {
                 ask.disown("office", reign).await.unwrap();

@@ -110,7 +110,7 @@ pub(super) struct Basis<'b, 'e> {
     pub(super) planners: &'b [BTreeMap<Key<'e>, &'b Entry<'e>>],
     /// Runs that all planners had.
     pub(super) common: &'b BTreeSet<Key<'e>>,
-    /// What is resampled.
+    /// Unit of the resampling.
     pub(super) resampled: Resampled,
     /// Planners that arrived too seldom.
     pub(super) seldom: &'b [bool],

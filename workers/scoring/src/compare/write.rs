@@ -126,7 +126,7 @@ impl Comparison {
         text
     }
 
-    /// What the figures are of, in sentences.
+    /// Runs behind the figures, in sentences.
     #[must_use]
     pub fn basis(&self) -> String {
         let seeds = |n: usize| if n == 1 { "1 seed".to_owned() } else { format!("{n} seeds") };

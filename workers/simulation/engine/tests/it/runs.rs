@@ -31,12 +31,12 @@ fn on_every_shipped_location_the_reference_arrives_and_meets_everybody() {
     assert!(berths["behind"] >= 0.2, "{berths:?}");
 }
 
-/// What many runs show.
+/// Findings of many runs.
 struct Found {
     runs: u32,
     /// Runs in which anything is wrong.
     bad: u32,
-    /// What is wrong, run by run.
+    /// Troubles, run by run.
     lines: Vec<String>,
     /// Lower decile of the distances kept, m, by relation.
     berths: BTreeMap<&'static str, f64>,
@@ -49,7 +49,7 @@ fn look_at(every: usize) -> Found {
     let mut per: BTreeMap<&'static str, Vec<(f64, f64)>> = BTreeMap::new();
     for name in socrates_maps::shipped::names() {
         let location = place(name);
-        for way in ways(&location, every, 0) {
+        for way in ways(&location, every) {
             for (relation, cast, node) in relations(&location, &way) {
                 let made = scenario(&location, way.clone(), vec![cast], &[Some(node.clone())], vec![], false);
                 // One behind the other they pass the node one after the other; people let the robot out of a room first.
