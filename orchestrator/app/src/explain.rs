@@ -101,7 +101,7 @@ enum Page {
 /// The page of a metric, a code or a word, whatever its case and with blanks for `_`.
 fn page(text: &str) -> Option<Page> {
     let id = text.trim().trim_matches('`').to_lowercase().replace([' ', '-'], "_");
-    let mut sheets = CATALOG.iter().flat_map(|family| family.sheets.iter().map(move |sheet| (family, sheet)));
+    let mut sheets = CATALOG.iter().flat_map(|family| family.sheets().iter().map(move |sheet| (family, sheet)));
     let name = peers::ours(&id);
     let meant = name.map_or(id.as_str(), |name| name.ours);
     let metric = sheets.find(|(_, sheet)| sheet.id == meant).map(|(family, sheet)| Page::Metric(family, sheet, name));
@@ -118,7 +118,7 @@ fn near(text: &str) -> Vec<String> {
     let wanted = text.to_lowercase().replace(['_', '-'], " ");
     let words = socrates_model::words::words();
     let known = FaultCode::ALL.iter().map(|code| code.code().to_owned());
-    let known = known.chain(CATALOG.iter().flat_map(|family| family.sheets).map(|sheet| sheet.id.to_owned()));
+    let known = known.chain(CATALOG.iter().flat_map(Family::sheets).map(|sheet| sheet.id.to_owned()));
     let known = known.chain(peers::NAMES.iter().map(|name| name.name.to_owned()));
     let known = known.chain(crate::coverage::WORDS.iter().map(|(name, _)| (*name).to_owned()));
     let known = known.chain(words.iter().flat_map(|word| &word.names).map(|name| (*name).to_owned()));

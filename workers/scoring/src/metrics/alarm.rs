@@ -1,34 +1,15 @@
 //! Two costs of planners among people, as the largest of a run: how soon the two would touch, and how narrowly they miss.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
+use crate::metrics::{Begin, Family, Measure, Measured};
 use crate::tracks::Sample;
 
 /// Largest value of both, 1/s: that of a time to collision of 0.1 s, and of a contact (SocNav3 has 10 for a contact).
 const MOST_PER_S: f64 = 10.0;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "fear_max",
-            unit: "1/s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "HATEB (Singamaneni et al. 2021) by way of SocNav3, max_fear, with the real radii",
-            about: "largest 1 / time to collision at constant velocity, 0 to 10: 0 where nobody is ever on a collision course, 10 in contact or within 0.1 s of it",
-        },
-        Sheet {
-            id: "panic_max",
-            unit: "1/s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "HATEB (Singamaneni et al. 2021) by way of SocNav3, max_panic, with the real radii",
-            about: "largest (V / C) m / (m - R) of two who come nearer and would miss each other, 0 to 10: V the relative speed, C the center distance, R the sum of radii, m the center distance at which they would pass at constant velocity",
-        },
-    ],
+    name: "alarm",
     thresholds: &[("most_per_s", MOST_PER_S)],
     measure: Measure::Online(Begin(|_| Box::new(Alarm::default()))),
 };

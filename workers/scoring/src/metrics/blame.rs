@@ -3,20 +3,13 @@
 use crate::metrics::collisions::closing_share;
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::ttc::EXPOSED_SECS;
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::running::{MeanWhileBelow, Pen};
 use crate::tracks::Sample;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[Sheet {
-        id: "blame",
-        unit: "share",
-        direction: Direction::Down,
-        needs: &[Need::Robot, Need::Humans],
-        source: "own: no canonical formula is published",
-        about: "mean share of the robot in the closing speed while the time to collision is below 3 s; 0.5 when both come alike",
-    }],
+    name: "blame",
     thresholds: &[("exposed_secs", EXPOSED_SECS)],
     measure: Measure::Online(Begin(|humans| Box::new(Blame::new(humans)))),
 };

@@ -2,76 +2,16 @@
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::scene::{REARM_M, REARM_SECS};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::metrics::{Begin, Family, Measure, Measured, count};
 use crate::running::Below;
 use crate::series::Span;
 
 /// A wall is known to the size of a cell only; nearer than the radius less this is a contact, m.
 pub(super) const WALL_SLACK_M: f64 = 0.05;
 
-const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
-const WALLS: &[Need] = &[Need::Robot, Need::Map];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "human_collisions",
-            unit: "count",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "Francis et al. 2023, table 1 (HC)",
-            about: "contacts with humans: stretches with a surface distance below 0, re-armed above 0.05 m for 0.5 s",
-        },
-        Sheet {
-            id: "human_contact_seconds",
-            unit: "s",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "derived from human_collisions",
-            about: "time with a surface distance to a human below 0",
-        },
-        Sheet {
-            id: "robot_on_person_collisions",
-            unit: "count",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "HuNavSim and SEAN 2.0, with the closing speeds of both",
-            about: "contacts in which the robot's share of the closing speed is above one half",
-        },
-        Sheet {
-            id: "person_on_robot_collisions",
-            unit: "count",
-            direction: Direction::Neutral,
-            needs: PEOPLE,
-            source: "HuNavSim and SEAN 2.0, with the closing speeds of both",
-            about: "contacts in which the person's share of the closing speed is at least one half",
-        },
-        Sheet {
-            id: "contact_robot_share",
-            unit: "share",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "own: robot closing a = (v_r . n)+, person closing b = (-v_h . n)+, share a / (a + b)",
-            about: "mean share of the robot in the closing speed at contact; not applicable without contact",
-        },
-        Sheet {
-            id: "wall_collisions",
-            unit: "count",
-            direction: Direction::Down,
-            needs: WALLS,
-            source: "Francis et al. 2023, table 1 (WC)",
-            about: "stretches with the robot's surface less than -0.05 m from a wall of the map",
-        },
-        Sheet {
-            id: "wall_contact_seconds",
-            unit: "s",
-            direction: Direction::Down,
-            needs: WALLS,
-            source: "derived from wall_collisions",
-            about: "time with the robot's surface less than -0.05 m from a wall of the map",
-        },
-    ],
+    name: "collisions",
     thresholds: &[("wall_slack_m", WALL_SLACK_M), ("rearm_m", REARM_M), ("rearm_secs", REARM_SECS)],
     measure: Measure::Online(Begin(|humans| Box::new(Contacts::new(humans)))),
 };

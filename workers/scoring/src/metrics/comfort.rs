@@ -1,73 +1,23 @@
 //! Comfort of people as two published models have it, and the end of a run that took too long.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, Scene, count, or_why};
 use crate::running::Mean;
 use crate::tracks::Sample;
 
 /// Mass of the robot in the energy of a contact, kg: of a delivery robot, where none is stated.
 const MASS_KG: f64 = 50.0;
 
-const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "kirby_discomfort",
-            unit: "s",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "Kirby 2010, asymmetric Gaussian: sigma ahead max(2 v, 0.5) m, to the side 2/3, behind 1/2 of it",
-            about: "integral over time of the largest of the people's Gaussians (1 at the person) at the robot's center",
-        },
-        Sheet {
-            id: "contact_energy_max",
-            unit: "J",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "own: kinetic energy of the relative motion with 50 kg",
-            about: "largest energy (1/2) m v^2 of the relative velocity while touching a human, 0 without contact",
-        },
-        Sheet {
-            id: "collisions",
-            unit: "count",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Humans, Need::Map],
-            source: "Francis et al. 2023, table 1 (C)",
-            about: "contacts with humans and with walls together",
-        },
-        Sheet {
-            id: "agent_collisions",
-            unit: "count",
-            direction: Direction::Down,
-            needs: &[Need::OtherRobots],
-            source: "Francis et al. 2023, table 1 (AC)",
-            about: "contacts with other robots; recordings of ours hold one robot",
-        },
-        Sheet {
-            id: "timeout",
-            unit: "0/1",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Goal],
-            source: "Francis et al. 2023, table 1 (TO)",
-            about: "1 when the run ends without the robot at its goal",
-        },
-    ],
+    name: "comfort",
     thresholds: &[("mass_kg", MASS_KG)],
     measure: Measure::Online(Begin(|_| Box::new(Comfort::default()))),
 };
 
 /// What people do after the robot has arrived counts too.
 pub(super) const TOGETHER: Family = Family {
-    sheets: &[Sheet {
-        id: "aggregated_time",
-        unit: "s",
-        direction: Direction::Down,
-        needs: &[Need::Robot, Need::Humans, Need::Goal],
-        source: "Francis et al. 2023, table 1 (AT): the last of a cooperative set",
-        about: "time until the robot and every human who walks have stopped walking for good; not applicable when the robot never arrives",
-    }],
+    name: "comfort_together",
     thresholds: &[],
     measure: Measure::Whole { measure: together, why: "people walk on after the robot has arrived" },
 };

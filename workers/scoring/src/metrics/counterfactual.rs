@@ -1,7 +1,7 @@
 //! Whose near miss it was, by what would have been: with a robot that stops in time, and with people who go as they
 //! go without a robot.
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::tracks::Track;
 use socrates_model::Point;
 
@@ -12,28 +12,9 @@ const STOP_SECS: f64 = 2.0;
 /// What happens up to so long after the closest approach still counts, s.
 const AFTER_SECS: f64 = 2.0;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Twin];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "blame_counterfactual",
-            unit: "share",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "own: no canonical formula is published",
-            about: "share of the near misses and contacts (below 0.5 m between surfaces) that the person, going as in the twin run, would have had with the robot as it went and would not have had with a robot that stops 2 s before the closest approach",
-        },
-        Sheet {
-            id: "near_misses_by_people",
-            unit: "share",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "own: no canonical formula is published",
-            about: "share of the near misses and contacts (below 0.5 m between surfaces) in which the person, going as in the twin run, would have kept 0.5 m from the robot as it went: the person came to the robot",
-        },
-    ],
+    name: "counterfactual",
     thresholds: &[("near_m", NEAR_M), ("stop_secs", STOP_SECS), ("after_secs", AFTER_SECS)],
     measure: Measure::Whole { measure, why: "compared with a whole run without the robot" },
 };
@@ -48,7 +29,7 @@ fn place(track: &Track, t: f64) -> Option<Point> {
 }
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let fail = |why: String| FAMILY.sheets.iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
+    let fail = |why: String| FAMILY.sheets().iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
     let twin = match scene.twin() {
         Ok(twin) => twin,
         Err(why) => return fail(why),

@@ -3,48 +3,12 @@
 use std::f64::consts::PI;
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, count, or_why};
 use crate::running::{Below, Pen};
-
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-const SOURCE: &str = "CrowdBot evaluation tools, local density";
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "density_5m_mean",
-            unit: "1/m^2",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "time mean of the people within 5 m of the robot over the area of that disc",
-        },
-        Sheet {
-            id: "density_3m_mean",
-            unit: "1/m^2",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "time mean of the people within 3 m of the robot over the area of that disc",
-        },
-        Sheet {
-            id: "density_10m_mean",
-            unit: "1/m^2",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "time mean of the people within 10 m of the robot over the area of that disc",
-        },
-        Sheet {
-            id: "density_2_5m_max",
-            unit: "1/m^2",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "most people within 2.5 m of the robot at once over the area of that disc",
-        },
-    ],
+    name: "crowding",
     thresholds: &[("mean_a_m", MEAN_M[0]), ("mean_b_m", MEAN_M[1]), ("mean_c_m", MEAN_M[2]), ("most_m", MOST_M)],
     measure: Measure::Online(Begin(|humans| Box::new(Crowding::new(humans)))),
 };

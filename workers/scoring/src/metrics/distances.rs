@@ -1,51 +1,12 @@
 //! Distances to people and walls.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::running::{Least, Mean};
 
-const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
-const WALLS: &[Need] = &[Need::Robot, Need::Map];
-
 /// The family.
-pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "human_distance_min",
-            unit: "m",
-            direction: Direction::Up,
-            needs: PEOPLE,
-            source: "Francis et al. 2023, table 1 (DH_min)",
-            about: "smallest surface distance to a human; negative in contact",
-        },
-        Sheet {
-            id: "human_distance_mean_closest",
-            unit: "m",
-            direction: Direction::Up,
-            needs: PEOPLE,
-            source: "HuNavSim, avg_distance_to_closest_person",
-            about: "time mean of the surface distance to the closest human, at least 0",
-        },
-        Sheet {
-            id: "clearing_distance_min",
-            unit: "m",
-            direction: Direction::Up,
-            needs: WALLS,
-            source: "Francis et al. 2023, table 1 (CD)",
-            about: "smallest distance of the robot's surface from the map's walls",
-        },
-        Sheet {
-            id: "clearing_distance_mean",
-            unit: "m",
-            direction: Direction::Up,
-            needs: WALLS,
-            source: "Francis et al. 2023, table 1 (CD)",
-            about: "time mean of the distance of the robot's surface from the map's walls",
-        },
-    ],
-    thresholds: &[],
-    measure: Measure::Online(Begin(|_| Box::new(Distances::default()))),
-};
+pub(super) const FAMILY: Family =
+    Family { name: "distances", thresholds: &[], measure: Measure::Online(Begin(|_| Box::new(Distances::default()))) };
 
 #[derive(Clone, Default)]
 struct Distances {

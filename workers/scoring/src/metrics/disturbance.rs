@@ -3,36 +3,15 @@
 use socrates_model::geometry::wrap_angle;
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, count, or_why};
 use crate::tracks::{MOVING_MPS, Sample};
 
 /// A person farther from the robot's surface than this is not disturbed by it, m (DR-MPC).
 const REACH_M: f64 = 1.5;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-const SOURCE: &str =
-    "DR-MPC (arXiv 2410.10646), disturbance, without its weights and summed over changes instead of per step";
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "disturbance_speed",
-            unit: "m/s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "speed that a human loses near the robot, mean over humans: sum over 0.1 s steps of (v - v')+ (1 - d / 1.5 m)+, d the surface distance before the step; from 0, which is also that of a run in which nobody comes near",
-        },
-        Sheet {
-            id: "disturbance_turn",
-            unit: "rad",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "turning of a human near the robot, mean over humans: sum over 0.1 s steps of |change of the direction of travel| (1 - d / 1.5 m)+ of who walks (0.1 m/s) before and after; from 0",
-        },
-    ],
+    name: "disturbance",
     thresholds: &[("reach_m", REACH_M), ("moving_mps", MOVING_MPS)],
     measure: Measure::Online(Begin(|humans| Box::new(Disturbance::new(humans)))),
 };

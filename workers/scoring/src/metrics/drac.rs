@@ -1,7 +1,7 @@
 //! Deceleration needed to avoid a crash, and speed near people.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::running::{MeanWhileBelow, Pen};
 use crate::tracks::Sample;
 use socrates_model::Vector;
@@ -11,28 +11,9 @@ const NEAR_M: f64 = 1.2;
 /// Surfaces nearer than this have met: the deceleration would be without bound, m.
 const TOUCH_M: f64 = 0.01;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "drac_max",
-            unit: "m/s^2",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Almqvist et al. 1991 (DRAC)",
-            about: "largest closing speed squared over twice the surface distance, where that is at least 0.01 m",
-        },
-        Sheet {
-            id: "speed_near_people",
-            unit: "m/s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "ISO 13482 practice, as mean speed while a human is within 1.2 m",
-            about: "mean speed of the robot while the closest human's surface is within 1.2 m",
-        },
-    ],
+    name: "drac",
     thresholds: &[("near_m", NEAR_M), ("touch_m", TOUCH_M)],
     measure: Measure::Online(Begin(|humans| Box::new(Crash::new(humans)))),
 };

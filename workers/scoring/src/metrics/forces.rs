@@ -2,7 +2,7 @@
 
 use socrates_model::Vector;
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
 
@@ -20,69 +20,9 @@ const WALL_RANGE_M: f64 = 0.2;
 /// Time between two samples that are looked at, s.
 const THIN_SECS: f64 = 0.05;
 
-const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
-const SOURCE: &str = "HuNavSim evaluator, after Moussaid et al. 2009, with the angle of lightsfm and times the step";
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "social_force_on_people",
-            unit: "model",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: SOURCE,
-            about: "time mean of the sum of the sizes of the social forces that the robot exerts on people",
-        },
-        Sheet {
-            id: "social_force_on_robot",
-            unit: "model",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: SOURCE,
-            about: "time mean of the size of the summed social force of all people on the robot",
-        },
-        Sheet {
-            id: "obstacle_force_on_robot",
-            unit: "model",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Map],
-            source: "HuNavSim evaluator: 10 e^(-(d - rho) / 0.2) from the nearest wall",
-            about: "time mean of the force of the nearest wall on the robot",
-        },
-        Sheet {
-            id: "obstacle_force_on_people",
-            unit: "model",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Humans, Need::Map],
-            source: "HuNavSim evaluator: 10 e^(-(d - rho) / 0.2) from the nearest wall, times the step",
-            about: "time mean of the force of the nearest wall on a human, mean over humans",
-        },
-        Sheet {
-            id: "social_work",
-            unit: "model*s",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Humans, Need::Map],
-            source: "HuNavSim, social_work, times the step so that it does not grow with the sampling rate",
-            about: "integral over time of social force on the robot, wall force on the robot and social forces on people",
-        },
-        Sheet {
-            id: "social_work_rate",
-            unit: "model",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Humans, Need::Map],
-            source: "PIC4SeR, social work per second",
-            about: "social_work over the length of the trip, so that a slow robot is not worse for its time alone",
-        },
-        Sheet {
-            id: "social_force_p95",
-            unit: "model",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "Robot SF, force quantiles, weighted by time",
-            about: "sum of the sizes of the social forces that the robot exerts on people, undershot for 95 % of the time",
-        },
-    ],
+    name: "forces",
     thresholds: &[
         ("strength", STRENGTH),
         ("lambda", LAMBDA),

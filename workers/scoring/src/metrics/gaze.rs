@@ -1,35 +1,16 @@
 //! Times at which somebody is headed straight for somebody else: headings in place of gazes.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
+use crate::metrics::{Begin, Family, Measure, Measured};
 use crate::running::{Below, Pen};
 use crate::tracks::Sample;
 
 /// Half of the cone within which somebody is looked at, rad (5°, Arena).
 const CONE_RAD: f64 = 5.0 / 180.0 * std::f64::consts::PI;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "time_watched",
-            unit: "s",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "Arena, total_time_looked_at_by_pedestrians, with the bearing from the person to the robot",
-            about: "time for which at least one human's heading is within 5° of the direction to the robot, from any distance and through walls",
-        },
-        Sheet {
-            id: "time_watching",
-            unit: "s",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "Arena, total_time_looking_at_pedestrians",
-            about: "time for which the robot's heading is within 5° of the direction to at least one human, from any distance and through walls",
-        },
-    ],
+    name: "gaze",
     thresholds: &[("cone_rad", CONE_RAD)],
     measure: Measure::Online(Begin(|_| Box::new(Gaze::new()))),
 };

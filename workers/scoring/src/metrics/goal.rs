@@ -1,42 +1,12 @@
 //! How near the robot came to its goal.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::running::Least;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
-
 /// The family.
-pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "goal_ratio",
-            unit: "share",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "SocNavBench, goal_traversal_ratio, as what is left",
-            about: "shortest way to the goal that is left at the end over that at the start (straight without a map)",
-        },
-        Sheet {
-            id: "goal_distance_min",
-            unit: "m",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "HuNavSim, minimum_distance_to_target",
-            about: "smallest straight distance to the goal",
-        },
-        Sheet {
-            id: "goal_distance_final",
-            unit: "m",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "HuNavSim, final_distance_to_target",
-            about: "straight distance to the goal at the end of the trip",
-        },
-    ],
-    thresholds: &[],
-    measure: Measure::Online(Begin(|_| Box::new(Nearest::default()))),
-};
+pub(super) const FAMILY: Family =
+    Family { name: "goal", thresholds: &[], measure: Measure::Online(Begin(|_| Box::new(Nearest::default()))) };
 
 /// The smallest straight distance so far.
 #[derive(Clone, Default)]

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use socrates_maps::{DistanceField, Geodesic, Ground, Kept};
 use socrates_model::{Cell, Grid, NodeId, Point};
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::tracks::Sample;
 
 /// Weight of a detour in the belief, 1/m: the belief of a watcher falls with `exp(-beta * detour)` (Dragan, Lee and Srinivasa,
@@ -27,61 +27,9 @@ const MAX_ROBOTS: usize = 4;
 /// Half of a human's field of view, rad (100°).
 const HALF_VIEW_RAD: f64 = 100.0 / 180.0 * std::f64::consts::PI;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Goal, Need::Map];
-const WATCHED: &[Need] = &[Need::Robot, Need::Goal, Need::Map, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "legibility",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Dragan et al. 2013, with the ends of the scene graph's ways as goals",
-            about: "mean belief in the true goal, early moments weighing more (T - t); belief of goal G after way xi to Q is in proportion to exp(-beta (|xi| + V_G(Q) - V_G(S))), V the shortest way on the map, beta 1/m, all goals alike at the start",
-        },
-        Sheet {
-            id: "predictability",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Dragan et al. 2013",
-            about: "exp(-beta (L - L*)) of a robot that arrived, beta 1/m: 1 on the shortest way",
-        },
-        Sheet {
-            id: "readiness_envelope",
-            unit: "s",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Taylor et al. 2022, with the belief of legibility in place of a viewer's",
-            about: "time before the end from which on the belief in the true goal stays at 0.5 or more; 0 where it never does",
-        },
-        Sheet {
-            id: "clarity",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Taylor et al. 2022, with the belief of legibility in place of a viewer's",
-            about: "mean belief in the true goal over time",
-        },
-        Sheet {
-            id: "confusions",
-            unit: "count",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Taylor et al. 2022, moments of confusion, with the belief of legibility",
-            about: "drops of the belief in the true goal below 0.5 after it had been above",
-        },
-        Sheet {
-            id: "legibility_observed",
-            unit: "share",
-            direction: Direction::Up,
-            needs: WATCHED,
-            source: "Taylor et al. 2022, observer-aware: legibility while somebody sees the robot",
-            about: "legibility over the moments at which at least one human has the robot in view (100° to each side, line of sight)",
-        },
-    ],
+    name: "goals",
     thresholds: &[("beta_per_m", BETA_PER_M), ("sure", SURE), ("apart_m", APART_M), ("half_view_rad", HALF_VIEW_RAD)],
     measure: Measure::Whole { measure, why: "the goals and the weights T - t are known at the end" },
 };

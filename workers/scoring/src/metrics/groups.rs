@@ -4,7 +4,7 @@ use socrates_model::{HumanId, Point};
 
 use crate::circle::{Circle, P_SPACE_M, STANDING_MPS};
 use crate::hull::{convex_hull, outside_hull_m};
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::running::Least;
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
@@ -17,72 +17,9 @@ const RELATION_M: f64 = 0.6;
 /// The hull of a group is inflated by this, m.
 const HULL_M: f64 = 0.45;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Groups];
-
-const fn of_group(id: &'static str, unit: &'static str, source: &'static str, about: &'static str) -> Sheet {
-    Sheet { id, unit, direction: Direction::Down, needs: NEEDS, source, about }
-}
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        of_group(
-            "o_space_seconds",
-            "s",
-            "Kendon 1990 (F-formation); center from the members' positions and headings",
-            "time with the robot's disc in a standing group's o-space: the circle about the point nearest to all lines of sight that touches the members' discs",
-        ),
-        of_group(
-            "o_space_depth_max",
-            "m",
-            "Kendon 1990 (F-formation)",
-            "largest depth of the robot's disc in an o-space, 0 for none",
-        ),
-        of_group(
-            "o_space_entries",
-            "count",
-            "Kendon 1990 (F-formation)",
-            "entries of the robot's disc into an o-space, re-armed 0.05 m outside for 0.5 s",
-        ),
-        of_group(
-            "group_splits",
-            "count",
-            "Truong and Ngo 2017, as crossings between members",
-            "crossings of the line between two members nearer than 2.5 m to each other by the robot's center",
-        ),
-        of_group(
-            "relation_disturbance",
-            "s",
-            "Okal and Arras 2016, relation disturbance, in seconds",
-            "sum over pairs of members of the time with the robot's center beside their line, nearer than 0.6 m",
-        ),
-        of_group(
-            "p_space_seconds",
-            "s",
-            "Kendon 1990 (F-formation)",
-            "time with the robot's disc in a standing group's p-space: the ring of 0.6 m about its o-space",
-        ),
-        of_group(
-            "group_hull_seconds",
-            "s",
-            "hull intrusion as in TAGA (arXiv 2503.21168), inflated by 0.45 m",
-            "time with the robot's disc nearer than 0.45 m to the convex hull of a group's members, standing or walking",
-        ),
-        of_group(
-            "group_collision",
-            "0/1",
-            "TAGA (arXiv 2503.21168), group collision rate, per run",
-            "1 when the robot's disc was ever nearer than 0.45 m to the convex hull of a group's members",
-        ),
-        Sheet {
-            id: "group_distance_min",
-            unit: "m",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Robot SF, min_distance_to_group_boundary, to the convex hull and from the robot's surface",
-            about: "smallest distance of the robot's disc from the convex hull of a group's members, standing or walking; 0 once it touches the hull",
-        },
-    ],
+    name: "groups",
     thresholds: &[
         ("together_m", TOGETHER_M),
         ("relation_m", RELATION_M),
@@ -98,7 +35,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let groups: Vec<Vec<&Track>> =
         scene.groups().iter().map(|group| members(scene, group)).filter(|group| group.len() >= 2).collect();
     if groups.is_empty() {
-        return FAMILY.sheets.iter().map(|_| Err("no group of two is in the recording".to_owned())).collect();
+        return FAMILY.sheets().iter().map(|_| Err("no group of two is in the recording".to_owned())).collect();
     }
     let (mut seconds, mut entries) = (0.0, 0_usize);
     let mut deepest: Option<f64> = None;

@@ -2,46 +2,13 @@
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::zones::HALL_M;
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
+use crate::metrics::{Begin, Family, Measure, Measured};
 use crate::running::{AreaBelow, Below};
 use crate::tracks::Sample;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
-const fn uniform(id: &'static str, about: &'static str) -> Sheet {
-    Sheet {
-        id,
-        unit: "person*s",
-        direction: Direction::Down,
-        needs: NEEDS,
-        source: "Okal and Arras 2016, uniform, in seconds instead of samples",
-        about,
-    }
-}
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        uniform("intrusion_intimate", "sum over humans of the time with the robot's surface nearer than 0.45 m"),
-        uniform("intrusion_personal", "sum over humans of the time with the robot's surface nearer than 1.2 m"),
-        uniform("intrusion_social", "sum over humans of the time with the robot's surface nearer than 3.6 m"),
-        Sheet {
-            id: "intrusion_anisotropic",
-            unit: "person*s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Okal and Arras 2016, anisotropic, b = 1, lambda = 0.4, r = 0.9, a = 1.2 m",
-            about: "sum over humans of the time with d < a e^((r - d) / b) (lambda + (1 - lambda)(1 + cos phi) / 2), d the center distance and phi the angle off the person's heading: a robot in front intrudes from farther away",
-        },
-        Sheet {
-            id: "intrusion_area",
-            unit: "m*s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Robot SF, social_proxemic_intrusion_area_m_s, as an integral",
-            about: "sum over humans of the integral over time of (1.2 m - d)+, d the surface distance: how deep the robot is in their personal space, times how long; negative distances of contacts count in full",
-        },
-    ],
+    name: "intrusion",
     thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
     measure: Measure::Online(Begin(|humans| Box::new(Intrusions::new(humans)))),
 };

@@ -50,6 +50,10 @@ mod unrecorded;
 mod yielding;
 mod zones;
 
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Deserializer};
 use socrates_model::{MetricValue, Missing, Unit};
 
 pub use goals::rival_goals;
@@ -60,7 +64,8 @@ pub use table::csv;
 pub use thresholds::signature;
 
 /// What a metric needs; where it is missing, the metric is not applicable, never 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Need {
     /// Trajectories alone.
     Tracks,
@@ -89,13 +94,16 @@ pub enum Need {
 }
 
 /// Whether more is better.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub enum Direction {
     /// Larger is better.
+    #[serde(rename = "more")]
     Up,
     /// Smaller is better.
+    #[serde(rename = "less")]
     Down,
     /// Neither.
+    #[serde(rename = "neither")]
     Neutral,
 }
 
@@ -111,22 +119,44 @@ impl Direction {
     }
 }
 
-/// The fact sheet of one metric.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The fact sheet of one metric, a row of `data/metrics.toml`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Sheet {
     /// Id, as in reports and tables.
+    #[serde(deserialize_with = "text")]
     pub id: &'static str,
     /// Unit.
+    #[serde(deserialize_with = "text")]
     pub unit: &'static str,
     /// Whether more is better.
+    #[serde(rename = "better")]
     pub direction: Direction,
     /// What it needs.
+    #[serde(deserialize_with = "needs")]
     pub needs: &'static [Need],
     /// Where the definition comes from.
+    #[serde(deserialize_with = "text")]
     pub source: &'static str,
     /// What it is, with its formula and convention.
+    #[serde(deserialize_with = "text")]
     pub about: &'static str,
 }
+
+/// A text of a sheet; sheets live as long as the process.
+fn text<'de, D: Deserializer<'de>>(from: D) -> Result<&'static str, D::Error> {
+    String::deserialize(from).map(|text| &*text.leak())
+}
+
+/// The needs of a sheet.
+fn needs<'de, D: Deserializer<'de>>(from: D) -> Result<&'static [Need], D::Error> {
+    Vec::deserialize(from).map(|needs| &*needs.leak())
+}
+
+/// The sheets of every family, by its name.
+static SHEETS: LazyLock<BTreeMap<String, Vec<Sheet>>> = LazyLock::new(|| {
+    toml::from_str(include_str!("../../data/metrics.toml")).expect("the tests read the file of the sheets")
+});
 
 impl Need {
     /// What is said of a run that has not got it.
@@ -193,8 +223,8 @@ pub struct Begin(fn(usize) -> Box<dyn online::Running>);
 /// Metrics that are computed together.
 #[derive(Debug, Clone, Copy)]
 pub struct Family {
-    /// Fact sheets, in the order of the values.
-    pub sheets: &'static [Sheet],
+    /// Name of its sheets in `data/metrics.toml`.
+    name: &'static str,
     /// Names and values of what decides what counts: distances, times, speeds. With other ones the figures are others,
     /// see [`signature`].
     pub thresholds: &'static [(&'static str, f64)],
@@ -203,6 +233,12 @@ pub struct Family {
 }
 
 impl Family {
+    /// Fact sheets, in the order of the values.
+    #[must_use]
+    pub fn sheets(&self) -> &'static [Sheet] {
+        SHEETS.get(self.name).map_or(&[], Vec::as_slice)
+    }
+
     /// Why the values can be had only when the run is over; `None` where [`Online`] gives them at any time.
     #[must_use]
     pub const fn waits(&self) -> Option<&'static str> {
@@ -213,7 +249,8 @@ impl Family {
     }
 }
 
-/// Every metric, in report order. Adding one is a sheet in its family's file, or a new file and a line here.
+/// Every metric, in report order. Adding one is a row of `data/metrics.toml` and its value in its family's file,
+/// or a new file and a line here.
 pub const CATALOG: &[Family] = &[
     success::FAMILY,
     collisions::FAMILY,
@@ -311,7 +348,7 @@ impl Sheet {
 
 /// Fact sheets of every metric, in report order.
 pub fn sheets() -> impl Iterator<Item = &'static Sheet> {
-    CATALOG.iter().flat_map(|family| family.sheets)
+    CATALOG.iter().flat_map(Family::sheets)
 }
 
 /// The fact sheet of a metric.
@@ -333,7 +370,7 @@ fn computed(scene: &Scene<'_>) -> Vec<MetricValue> {
         .iter()
         .zip(scene.online())
         .flat_map(|(family, grown)| {
-            let missing = family.sheets.iter().map(|sheet| scene.lacks(sheet.needs)).collect::<Vec<_>>();
+            let missing = family.sheets().iter().map(|sheet| scene.lacks(sheet.needs)).collect::<Vec<_>>();
             let values = match family.measure {
                 Measure::Online(_) => grown,
                 // A family runs when at least one of its metrics can be had.
@@ -341,7 +378,7 @@ fn computed(scene: &Scene<'_>) -> Vec<MetricValue> {
                 Measure::Whole { .. } => Vec::new(),
             };
             family
-                .sheets
+                .sheets()
                 .iter()
                 .zip(missing)
                 .enumerate()

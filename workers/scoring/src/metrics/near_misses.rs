@@ -1,7 +1,7 @@
 //! Near misses.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::metrics::{Begin, Family, Measure, Measured, count};
 use crate::running::Stretches;
 use crate::series::Span;
 
@@ -10,14 +10,7 @@ const NEAR_M: f64 = 0.5;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[Sheet {
-        id: "near_misses",
-        unit: "count",
-        direction: Direction::Down,
-        needs: &[Need::Robot, Need::Humans],
-        source: "Robot SF, near-miss counter",
-        about: "stretches with a surface distance to a human from 0 to 0.5 m that do not end in a contact",
-    }],
+    name: "near_misses",
     thresholds: &[("near_m", NEAR_M)],
     measure: Measure::Online(Begin(|humans| Box::new(Near::new(humans)))),
 };

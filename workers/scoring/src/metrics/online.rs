@@ -444,7 +444,7 @@ impl<'a> Online<'a> {
             .zip(&measured)
             .filter(|(family, _)| family.waits().is_none())
             .flat_map(|(family, values)| {
-                family.sheets.iter().zip(values).map(|(sheet, value)| match self.lacks(sheet.needs) {
+                family.sheets().iter().zip(values).map(|(sheet, value)| match self.lacks(sheet.needs) {
                     Some((missing, why)) => valued(sheet, Err(why), missing),
                     None => valued(sheet, value.clone(), Missing::NotApplicable),
                 })

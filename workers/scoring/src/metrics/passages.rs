@@ -3,7 +3,7 @@
 use socrates_model::Door;
 
 use crate::fidelity::doors::{FRAME_M, pieces_over};
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count};
+use crate::metrics::{Family, Measure, Measured, Scene, count};
 use crate::tracks::Track;
 
 /// Somebody nearer to the middle of a door than this has come to it, m.
@@ -11,24 +11,7 @@ const AT_DOOR_M: f64 = 2.0;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "entering_order_errors",
-            unit: "count",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Humans, Need::Map],
-            source: "SocialGym 2, wrong order of entering, with first come, first served as the order",
-            about: "humans who had come within 2 m of a door's middle before the robot, were still there when it went through, and went through after it; not applicable where nobody shares a door with the robot in this way",
-        },
-        Sheet {
-            id: "flow_throughput",
-            unit: "1/s",
-            direction: Direction::Up,
-            needs: &[Need::Humans, Need::Map],
-            source: "Seyfried et al. 2009, flow over a line (N - 1) / (t_N - t_1); Robot SF names flow_throughput and has no value",
-            about: "people a second through the door that most people go through, over the whole run: crossings less one over the time from the first to the last; not applicable for fewer than two",
-        },
-    ],
+    name: "passages",
     thresholds: &[("at_door_m", AT_DOOR_M), ("frame_m", FRAME_M)],
     measure: Measure::Whole { measure, why: "whether somebody goes through later is known at the end" },
 };

@@ -4,30 +4,11 @@ use std::f64::consts::TAU;
 
 use socrates_model::geometry::wrap_angle;
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, or_why};
-
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
+use crate::metrics::{Family, Measure, Measured, Scene, or_why};
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "passing_side",
-            unit: "turns",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "Mavrogiannis and Knepper 2019, winding number",
-            about: "winding number of the human who comes nearest about the robot: positive (counter-clockwise) when two who meet head on each keep to the right",
-        },
-        Sheet {
-            id: "topological_complexity",
-            unit: "turns",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "Mavrogiannis et al. 2018, topological complexity index",
-            about: "sum over humans of the absolute winding number about the robot",
-        },
-    ],
+    name: "passing",
     thresholds: &[],
     measure: Measure::Whole { measure, why: "the human meant is the one who comes nearest in the end" },
 };

@@ -5,7 +5,7 @@ use socrates_model::Point;
 use socrates_model::geometry::wrap_angle;
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, count, or_why};
 use crate::tracks::Sample;
 
 /// Step at which the shortest way is followed, m.
@@ -13,94 +13,9 @@ const TRACE_M: f64 = 0.25;
 /// Steps shorter than this have no direction, m.
 const STEP_M: f64 = 0.02;
 
-const ROBOT: &[Need] = &[Need::Robot];
-const GOAL: &[Need] = &[Need::Robot, Need::Goal];
-const MAP: &[Need] = &[Need::Robot, Need::Goal, Need::Map];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "path_length",
-            unit: "m",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "Francis et al. 2023, table 1 (PL)",
-            about: "length of the robot's path on an even 0.1 s grid",
-        },
-        Sheet {
-            id: "spl",
-            unit: "share",
-            direction: Direction::Up,
-            needs: MAP,
-            source: "Anderson et al. 2018 (SPL)",
-            about: "success times L* / max(L, L*), L* the shortest way for the robot's disc on the map",
-        },
-        Sheet {
-            id: "stl",
-            unit: "share",
-            direction: Direction::Up,
-            needs: MAP,
-            source: "Francis et al. 2021 (STL)",
-            about: "success times T* / max(T, T*), T* the shortest way at the robot's nominal speed",
-        },
-        Sheet {
-            id: "path_efficiency",
-            unit: "share",
-            direction: Direction::Up,
-            needs: MAP,
-            source: "SEAN 2.0, path_efficiency",
-            about: "L* / L of a robot that arrived",
-        },
-        Sheet {
-            id: "path_length_ratio",
-            unit: "ratio",
-            direction: Direction::Down,
-            needs: GOAL,
-            source: "SocNavBench, path_length_ratio as documented",
-            about: "path length over the straight distance from start to goal",
-        },
-        Sheet {
-            id: "path_irregularity",
-            unit: "rad/m",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "SocNavBench, path_irregularity, without its dependence on the origin",
-            about: "turning of the direction of travel, less that along the shortest way (without a map or a goal: the turn from the first to the last direction), over the path length",
-        },
-        Sheet {
-            id: "turning_excess",
-            unit: "rad",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "SEAN 2.0, path_irregularity, which is not divided by the length",
-            about: "turning of the direction of travel, less that along the shortest way (without a map or a goal: the turn from the first to the last direction)",
-        },
-        Sheet {
-            id: "time_over_ideal",
-            unit: "ratio",
-            direction: Direction::Down,
-            needs: MAP,
-            source: "Robot SF, time_to_goal_ideal_ratio",
-            about: "T / T* of a robot that arrived, T* the shortest way for its disc at its nominal speed: 1 is ideal",
-        },
-        Sheet {
-            id: "cumulative_heading_change",
-            unit: "rad",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "Francis et al. 2023; HuNavSim, cumulative_heading_changes",
-            about: "sum of the absolute changes of heading on an even 0.1 s grid",
-        },
-        Sheet {
-            id: "curvature_mean",
-            unit: "1/m",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "Menger curvature, as in Arena",
-            about: "mean Menger curvature 4 A / (a b c) of points half a meter of way apart",
-        },
-    ],
+    name: "path",
     thresholds: &[("step_m", STEP_M)],
     measure: Measure::Online(Begin(|_| Box::new(Way::default()))),
 };

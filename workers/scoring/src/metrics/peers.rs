@@ -14,7 +14,7 @@ use socrates_model::{MetricValue, Point};
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::scene::EVEN_SECS;
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::running::{AreaBelow, Below, Least, MeanWhileBelow, Pen};
 
 /// SEAN's radius of the goal, m.
@@ -30,78 +30,9 @@ const CROWDNAV_NEAR_PER_MS: f64 = 0.5;
 const CROWDNAV_GOAL: f64 = 1.0;
 const CROWDNAV_COLLISION: f64 = -0.25;
 
-const ROBOT: &[Need] = &[Need::Robot];
-const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
-const GOAL: &[Need] = &[Need::Robot, Need::Goal];
-
 /// What other tools define otherwise than we do.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "sean.completed",
-            unit: "0/1",
-            direction: Direction::Up,
-            needs: GOAL,
-            source: "SEAN 2.0, completed",
-            about: "1 when the robot came within 1.2 m of its goal, collisions or not",
-        },
-        Sheet {
-            id: "sean.targ_dist_norm",
-            unit: "share",
-            direction: Direction::Down,
-            needs: GOAL,
-            source: "SEAN 2.0, targ_dist_norm",
-            about: "straight distance to the goal at the end over that at the start",
-        },
-        Sheet {
-            id: "sean.time_not_moving",
-            unit: "s",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "SEAN 2.0, time_not_moving",
-            about: "time at which the robot is less than 0.05 m from where it was 1 s before",
-        },
-        Sheet {
-            id: "socnavbench.total_sim_time_taken",
-            unit: "s",
-            direction: Direction::Down,
-            needs: ROBOT,
-            source: "SocNavBench, total_sim_time_taken",
-            about: "length of the trip, whether the robot arrives or not",
-        },
-        Sheet {
-            id: "arena.total_time_in_personal_space",
-            unit: "s",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "Arena evaluation, total_time_in_personal_space, in seconds",
-            about: "time with the nearest human's center within 1 m of the robot's",
-        },
-        Sheet {
-            id: "arena.avg_velocity_in_personal_space",
-            unit: "m/s",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "Arena evaluation, avg_velocity_in_personal_space, of the velocity and not of the position",
-            about: "mean speed of the robot while the nearest human's center is within 1 m of its own; not applicable where nobody's is",
-        },
-        Sheet {
-            id: "crowdnav.collision",
-            unit: "0/1",
-            direction: Direction::Down,
-            needs: PEOPLE,
-            source: "CrowdNav, collision rate, per run",
-            about: "1 when the robot's disc ever touches a human's",
-        },
-        Sheet {
-            id: "crowdnav.reward",
-            unit: "1",
-            direction: Direction::Up,
-            needs: &[Need::Robot, Need::Humans, Need::Goal],
-            source: "CrowdNav, total reward, not discounted and with the discomfort as an integral",
-            about: "1 for an arrival without contact, -0.25 for a contact with a human, less 0.5 times the integral of (0.2 m - d)+, d the nearest surface distance, contacts as 0; at most 1",
-        },
-    ],
+    name: "peers",
     thresholds: &[
         ("sean_goal_m", SEAN_GOAL_M),
         ("sean_still_m", SEAN_STILL_M),

@@ -3,20 +3,13 @@
 use socrates_model::Point;
 
 use crate::metrics::scene::EVEN_SECS;
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::skips::{arcs, next};
 use crate::tracks::Track;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[Sheet {
-        id: "post_encroachment_time",
-        unit: "s",
-        direction: Direction::Up,
-        needs: &[Need::Robot, Need::Humans],
-        source: "Allen, Shin and Cooper 1978 (PET)",
-        about: "smallest time between one agent's disc leaving a place and the other's coming to it, over all places that both come over: min |t - u| with |x_r(t) - x_h(u)| at most the sum of the radii; 0 in contact",
-    }],
+    name: "pet",
     thresholds: &[],
     measure: Measure::Whole { measure, why: "the place where two ways cross is known when both have been gone" },
 };

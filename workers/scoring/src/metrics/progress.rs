@@ -1,7 +1,7 @@
 //! Failure to progress.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::metrics::{Begin, Family, Measure, Measured, count};
 use crate::tracks::{Sample, between};
 
 /// Length of a window, s, and the least progress in it, m: a robot that gains less is counted as stuck.
@@ -10,14 +10,7 @@ const LEAST_M: f64 = 0.1;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[Sheet {
-        id: "failure_to_progress",
-        unit: "count",
-        direction: Direction::Down,
-        needs: &[Need::Robot, Need::Goal],
-        source: "Francis et al. 2023, table 1 (FP)",
-        about: "windows of 5 s in which the shortest way to the goal became less than 0.1 m shorter",
-    }],
+    name: "progress",
     thresholds: &[("window_secs", WINDOW_SECS), ("least_m", LEAST_M)],
     measure: Measure::Online(Begin(|_| Box::new(Windows::default()))),
 };

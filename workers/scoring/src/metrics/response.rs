@@ -2,32 +2,12 @@
 
 use socrates_model::Gesture;
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, or_why};
 use crate::tracks::MOVING_MPS;
-
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Events];
-const SOURCE: &str = "Francis et al. 2023, gesture cards g and h, as a delay";
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "wait_response",
-            unit: "s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "longest time from a human's WAIT to the robot standing (below 0.1 m/s)",
-        },
-        Sheet {
-            id: "proceed_response",
-            unit: "s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "longest time from a human's PROCEED to the robot going (above 0.1 m/s)",
-        },
-    ],
+    name: "response",
     thresholds: &[("moving_mps", MOVING_MPS)],
     measure: Measure::Whole { measure, why: "the answer comes after the gesture" },
 };

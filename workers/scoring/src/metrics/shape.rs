@@ -5,7 +5,7 @@ use socrates_model::geometry::wrap_angle;
 use crate::metrics::path::Spaced;
 use crate::metrics::scene::EVEN_SECS;
 use crate::metrics::smoothness::{size, smoothed};
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 
 /// A swing of the speed of at least this is an oscillation, m/s.
 const SWING_MPS: f64 = 0.1;
@@ -14,42 +14,9 @@ const MOVED_M: f64 = 0.05;
 /// A second on the even grid.
 const MOVED_STEPS: usize = 10;
 
-const ROBOT: &[Need] = &[Need::Robot];
-
-const fn sheet(id: &'static str, unit: &'static str, source: &'static str, about: &'static str) -> Sheet {
-    Sheet { id, unit, direction: Direction::Down, needs: ROBOT, source, about }
-}
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        sheet(
-            "curvature_normalized",
-            "1",
-            "Arena, normalized_curvature",
-            "mean of Menger curvature times the length of both sides, of points half a meter of way apart",
-        ),
-        sheet(
-            "roughness",
-            "1",
-            "Arena, roughness",
-            "mean of 2 A / c^2 of the triangles of points half a meter of way apart, A the area and c the long side",
-        ),
-        sheet("angle_over_length", "rad/m", "Arena, angle_over_length", "changes of heading over the path length"),
-        sheet(
-            "speed_oscillations",
-            "count",
-            "velocity oscillation count, with swings of at least 0.1 m/s",
-            "turning points of the smoothed speed with a swing of at least 0.1 m/s before and after",
-        ),
-        sheet("acceleration_effort", "m/s", "SocNavBench, as integral of |a|", "integral of the smoothed acceleration"),
-        sheet(
-            "stopped_time",
-            "s",
-            "SEAN 2.0, time_not_moving: moved less than 0.05 m in the last second",
-            "time at which the robot has moved less than 0.05 m in the last second",
-        ),
-    ],
+    name: "shape",
     thresholds: &[("swing_mps", SWING_MPS), ("moved_m", MOVED_M)],
     measure: Measure::Whole { measure, why: "read with the smoothness of the whole speed profile" },
 };

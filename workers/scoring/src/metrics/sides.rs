@@ -3,7 +3,7 @@
 use socrates_model::Vector;
 
 use crate::metrics::goals::BETA_PER_M;
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::tracks::Track;
 
 /// From this near on a person looks where the robot will pass, m.
@@ -15,29 +15,9 @@ const BESIDE_M: f64 = 1.0;
 /// Belief from which the side is told: at 1 m to the side nothing can be surer than 0.88.
 const TOLD: f64 = 0.6;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-const SOURCE: &str = "Dragan et al. 2013, with the two sides of each person as goals";
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "side_legibility",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "mean over the people whom the robot passes within 3 m of the belief in the side on which it does, from 6 m on, early moments weighing more (T - t); the goals are 1 m to either side of the person, across the line from the robot to it at 6 m, ways are straight and relative to the person, beta 1/m",
-        },
-        Sheet {
-            id: "side_told",
-            unit: "s",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "shortest time over the people whom the robot passes within 3 m for which, up to being level, the same belief stays at 0.6 or more",
-        },
-    ],
+    name: "sides",
     thresholds: &[("look_m", LOOK_M), ("pass_m", PASS_M), ("beside_m", BESIDE_M), ("told", TOLD)],
     measure: Measure::Whole { measure, why: "the side on which the robot passes is known when it has passed" },
 };

@@ -1,97 +1,14 @@
 //! Acceleration, jerk and energy of the robot.
 
 use crate::metrics::scene::EVEN_SECS;
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::tracks::Sample;
 use socrates_model::Vector;
-
-const NEEDS: &[Need] = &[Need::Robot];
 
 /// The family. Velocities are those of the even 0.1 s grid, smoothed by the weights 1 2 1 (half power
 /// near 2.5 Hz): else jerk is sampling noise.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "acceleration_mean",
-            unit: "m/s^2",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (A)",
-            about: "mean acceleration of the smoothed velocity",
-        },
-        Sheet {
-            id: "acceleration_max",
-            unit: "m/s^2",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (A)",
-            about: "largest acceleration of the smoothed velocity",
-        },
-        Sheet {
-            id: "acceleration_min",
-            unit: "m/s^2",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (A)",
-            about: "smallest acceleration of the smoothed velocity",
-        },
-        Sheet {
-            id: "jerk_min",
-            unit: "m/s^3",
-            direction: Direction::Neutral,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (J)",
-            about: "smallest jerk of the smoothed velocity",
-        },
-        Sheet {
-            id: "jerk_max",
-            unit: "m/s^3",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (J)",
-            about: "largest jerk of the smoothed velocity",
-        },
-        Sheet {
-            id: "sparc",
-            unit: "1",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Balasubramanian et al. 2015 (SPARC), cut at 2.5 Hz and at 5 % of the greatest amplitude",
-            about: "minus the length of the amplitude spectrum of the smoothed speed, scaled to its range; nearer to 0 is smoother",
-        },
-        Sheet {
-            id: "jerk_mean",
-            unit: "m/s^3",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (J), from a second difference of velocity",
-            about: "mean jerk of the smoothed velocity",
-        },
-        Sheet {
-            id: "jerk_rms",
-            unit: "m/s^3",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Hogan and Sternad 2009",
-            about: "root mean square jerk of the smoothed velocity",
-        },
-        Sheet {
-            id: "log_dimensionless_jerk",
-            unit: "log",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Balasubramanian et al. 2012 (LDLJ)",
-            about: "-ln(T^3 / v_max^2 * integral of squared jerk); nearer to 0 is smoother; not applicable without jerk",
-        },
-        Sheet {
-            id: "motion_energy",
-            unit: "m^2/s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "SocNavBench, robot_motion_energy",
-            about: "integral of squared speed over the trip",
-        },
-    ],
+    name: "smoothness",
     thresholds: &[("even_secs", EVEN_SECS)],
     measure: Measure::Whole { measure, why: "the spectrum is that of the whole speed profile" },
 };

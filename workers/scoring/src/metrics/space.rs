@@ -1,7 +1,7 @@
 //! Keeping a distance.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::running::{Below, Mean, MeanWhileBelow};
 
 /// Distance to be kept, m (Francis et al. 2023), and that of `SocNavGym`.
@@ -10,44 +10,9 @@ const PERSONAL_M: f64 = 0.45;
 /// Nearer than this is uncomfortable, m (`CrowdNav`).
 const DISCOMFORT_M: f64 = 0.2;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "space_compliance",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (SC)",
-            about: "share of time with every human's surface at least 0.5 m away",
-        },
-        Sheet {
-            id: "personal_space_compliance",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "SocNavGym, personal space compliance (PSC), as the share it returns",
-            about: "share of time with every human's surface at least 0.45 m away",
-        },
-        Sheet {
-            id: "discomfort_share",
-            unit: "share",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "CrowdNav, discomfort frequency",
-            about: "share of time with a human's surface nearer than 0.2 m",
-        },
-        Sheet {
-            id: "discomfort_distance",
-            unit: "m",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "CrowdNav, mean distance in discomfort",
-            about: "mean surface distance to the closest human while that is below 0.2 m",
-        },
-    ],
+    name: "space",
     thresholds: &[("kept_m", KEPT_M), ("personal_m", PERSONAL_M), ("discomfort_m", DISCOMFORT_M)],
     measure: Measure::Online(Begin(|_| Box::new(Space::new()))),
 };

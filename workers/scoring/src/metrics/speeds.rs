@@ -1,52 +1,13 @@
 //! Speeds of everybody.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, count, or_why};
 use crate::running::{Least, Mean};
 use crate::tracks::Sample;
 
-const ROBOT: &[Need] = &[Need::Robot];
-const HUMANS: &[Need] = &[Need::Humans];
-
 /// The family.
-pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "robot_speed_mean",
-            unit: "m/s",
-            direction: Direction::Neutral,
-            needs: ROBOT,
-            source: "Francis et al. 2023, table 1 (V)",
-            about: "time mean of the robot's speed",
-        },
-        Sheet {
-            id: "robot_speed_max",
-            unit: "m/s",
-            direction: Direction::Neutral,
-            needs: ROBOT,
-            source: "Francis et al. 2023, table 1 (V)",
-            about: "largest speed of the robot",
-        },
-        Sheet {
-            id: "robot_speed_min",
-            unit: "m/s",
-            direction: Direction::Neutral,
-            needs: ROBOT,
-            source: "Francis et al. 2023, table 1 (V)",
-            about: "smallest speed of the robot",
-        },
-        Sheet {
-            id: "human_speed_mean",
-            unit: "m/s",
-            direction: Direction::Neutral,
-            needs: HUMANS,
-            source: "HuNavSim, avg_pedestrian_velocity",
-            about: "time mean of the humans' speeds, mean over humans",
-        },
-    ],
-    thresholds: &[],
-    measure: Measure::Online(Begin(|humans| Box::new(Speeds::new(humans)))),
-};
+pub(super) const FAMILY: Family =
+    Family { name: "speeds", thresholds: &[], measure: Measure::Online(Begin(|humans| Box::new(Speeds::new(humans)))) };
 
 #[derive(Clone)]
 struct Speeds {

@@ -2,7 +2,7 @@
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::scene::EVEN_SECS;
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::metrics::{Begin, Family, Measure, Measured, count};
 use crate::running::{Pen, Stretches};
 use crate::series::Span;
 use crate::tracks::Sample;
@@ -15,24 +15,7 @@ const FREEZE_SECS: f64 = 2.0;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "stalled_time",
-            unit: "s",
-            direction: Direction::Down,
-            needs: &[Need::Robot],
-            source: "HuNavSim, time_not_moving, with the sign of the spin ignored",
-            about: "time on the trip with a speed below 0.01 m/s and a spin below 0.02 rad/s",
-        },
-        Sheet {
-            id: "freezing_events",
-            unit: "count",
-            direction: Direction::Down,
-            needs: &[Need::Robot],
-            source: "Trautman and Krause 2010, as stalls of at least 2 s before the goal",
-            about: "stalls of at least 2 s before the robot is at its goal; where no goal is known, standing at the end of the recording is none",
-        },
-    ],
+    name: "stalls",
     thresholds: &[("still_mps", STILL_MPS), ("still_radps", STILL_RADPS), ("freeze_secs", FREEZE_SECS)],
     measure: Measure::Online(Begin(|_| Box::new(Stalls::new()))),
 };

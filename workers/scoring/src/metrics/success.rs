@@ -2,41 +2,11 @@
 
 use crate::fidelity::GOAL_M;
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
-
-const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
+use crate::metrics::{Begin, Family, Measure, Measured};
 
 /// The family.
-pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "success",
-            unit: "0/1",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (S)",
-            about: "1 when the robot came within 0.5 m of its goal (or said that it arrived) without touching a human or a wall",
-        },
-        Sheet {
-            id: "arrived",
-            unit: "0/1",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "HuNavSim, `completed`",
-            about: "1 when the robot came within 0.5 m of its goal (or said that it arrived), collisions or not",
-        },
-        Sheet {
-            id: "time_to_goal",
-            unit: "s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (T)",
-            about: "time from the start to the arrival; not applicable when the robot never arrives",
-        },
-    ],
-    thresholds: &[("goal_m", GOAL_M)],
-    measure: Measure::Online(Begin(|_| Box::new(Task))),
-};
+pub(super) const FAMILY: Family =
+    Family { name: "success", thresholds: &[("goal_m", GOAL_M)], measure: Measure::Online(Begin(|_| Box::new(Task))) };
 
 /// Everything that is asked is known at the end.
 #[derive(Clone)]

@@ -14,7 +14,7 @@ pub fn signature() -> String {
     let named = |of: &str, (name, value): &(&str, f64)| format!("{of}.{name}={value}\n");
     let text: String = CATALOG
         .iter()
-        .filter_map(|family| Some((family.sheets.first()?.id, family.thresholds)))
+        .filter_map(|family| Some((family.sheets().first()?.id, family.thresholds)))
         .flat_map(|(of, thresholds)| thresholds.iter().map(move |threshold| named(of, threshold)))
         .collect();
     format!("{PROFILE}-{}", Digest::of(text.as_bytes()).short())
@@ -28,7 +28,7 @@ mod tests {
     fn every_threshold_has_a_name_of_its_own_in_its_family() {
         for family in CATALOG {
             let names: std::collections::BTreeSet<&str> = family.thresholds.iter().map(|(name, _)| *name).collect();
-            assert_eq!(names.len(), family.thresholds.len(), "{}", family.sheets[0].id);
+            assert_eq!(names.len(), family.thresholds.len(), "{}", family.sheets()[0].id);
             assert!(family.thresholds.iter().all(|(_, value)| value.is_finite()));
         }
         assert!(signature().starts_with("standard-") && signature() == signature());

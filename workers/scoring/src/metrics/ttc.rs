@@ -2,7 +2,7 @@
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::scene::EVEN_SECS;
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::metrics::{Begin, Family, Measure, Measured, or_why};
 use crate::series::Series;
 use crate::tracks::Sample;
 
@@ -11,44 +11,9 @@ pub(crate) const EXPOSED_SECS: f64 = 3.0;
 /// Longer times count as this one, so that curves have a number, s.
 const FAR_SECS: f64 = 100.0;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "ttc_min",
-            unit: "s",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (TTC)",
-            about: "smallest time to collision of the discs at constant velocity; 0 in contact",
-        },
-        Sheet {
-            id: "ttc_p5",
-            unit: "s",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: "Francis et al. 2023, table 1 (TTC)",
-            about: "time to collision that is undershot for 5 % of the time on a collision course",
-        },
-        Sheet {
-            id: "time_exposed_ttc",
-            unit: "s",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Minderhoud and Bovy 2001 (TET)",
-            about: "time with a time to collision below 3 s",
-        },
-        Sheet {
-            id: "time_integrated_ttc",
-            unit: "s^2",
-            direction: Direction::Down,
-            needs: NEEDS,
-            source: "Minderhoud and Bovy 2001 (TIT)",
-            about: "integral of (3 s - time to collision)+ over time",
-        },
-    ],
+    name: "ttc",
     thresholds: &[("exposed_secs", EXPOSED_SECS), ("far_secs", FAR_SECS)],
     measure: Measure::Online(Begin(|_| Box::new(Times::default()))),
 };

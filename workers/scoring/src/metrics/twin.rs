@@ -1,6 +1,6 @@
 //! What the robot's presence costs people: the run against its twin, the same scenario and seed without a robot.
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::series::Series;
 use crate::tracks::Track;
 use socrates_model::geometry::wrap_angle;
@@ -12,47 +12,9 @@ const WALK_M: f64 = 1.0;
 /// Step of the grid for sums over changes, s.
 const EVEN_SECS: f64 = 0.1;
 
-const NEEDS: &[Need] = &[Need::Humans, Need::Twin];
-
-const fn sheet(id: &'static str, unit: &'static str, source: &'static str, about: &'static str) -> Sheet {
-    Sheet { id, unit, direction: Direction::Down, needs: NEEDS, source, about }
-}
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        sheet(
-            "people_deviation",
-            "m",
-            "pedestrian deviation against a twin run, as defined (not implemented) in Robot SF",
-            "mean over people and time of the distance between where they are and where they are without the robot",
-        ),
-        sheet(
-            "flow_delay_mean",
-            "s",
-            "flow delay against a twin run",
-            "mean over people who walk of how much later they are within 0.5 m of where they end without the robot, 0 for sooner",
-        ),
-        sheet("flow_delay_p95", "s", "flow delay against a twin run", "95th percentile over people of the same delay"),
-        sheet(
-            "flow_delay_gap",
-            "s",
-            "inequality of delays against a twin run",
-            "90th percentile less median of the same delay: whether a few bear it",
-        ),
-        sheet(
-            "people_effort",
-            "m/s",
-            "person-side effort against a twin run",
-            "sum over people of the changes of velocity, less that without the robot",
-        ),
-        sheet(
-            "people_turning",
-            "rad",
-            "person-side effort against a twin run",
-            "sum over people of the changes of heading, less that without the robot",
-        ),
-    ],
+    name: "twin",
     thresholds: &[("there_m", THERE_M), ("walk_m", WALK_M)],
     measure: Measure::Whole { measure, why: "compared with a whole run without the robot" },
 };
@@ -66,7 +28,7 @@ fn effort(track: &Track, end_s: f64) -> (f64, f64) {
 }
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let fail = |why: String| FAMILY.sheets.iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
+    let fail = |why: String| FAMILY.sheets().iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
     let twin = match scene.twin() {
         Ok(twin) => twin,
         Err(why) => return fail(why),

@@ -1,53 +1,10 @@
 //! What recordings do not hold: commands and computing times of a planner, and the robot's way without people.
 
-use crate::metrics::{Direction, Family, Measure, Need, Scene, Sheet};
-
-const TIMES: &[Need] = &[Need::PlannerTimes];
+use crate::metrics::{Family, Measure, Scene};
 
 /// The family. It has values as soon as recordings tell what it needs.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "planner_latency_p50",
-            unit: "s",
-            direction: Direction::Down,
-            needs: TIMES,
-            source: "SocNavBench, wall-clock time per call of the planner",
-            about: "median time of one call of the planner; recordings are the same on every machine and so hold none",
-        },
-        Sheet {
-            id: "planner_latency_p95",
-            unit: "s",
-            direction: Direction::Down,
-            needs: TIMES,
-            source: "SocNavBench, wall-clock time per call of the planner",
-            about: "95th percentile of the time of one call of the planner",
-        },
-        Sheet {
-            id: "planner_wait",
-            unit: "s",
-            direction: Direction::Down,
-            needs: TIMES,
-            source: "SocNavBench, wall_wait_time",
-            about: "time for which the simulation waits for the planner",
-        },
-        Sheet {
-            id: "command_fluency",
-            unit: "share",
-            direction: Direction::Up,
-            needs: &[Need::Robot, Need::Commands],
-            source: "CrowdBot evaluation tools, fluency",
-            about: "1 less the mean change of the commanded velocity over its largest size",
-        },
-        Sheet {
-            id: "relative_time",
-            unit: "share",
-            direction: Direction::Up,
-            needs: &[Need::Robot, Need::Goal, Need::Solo],
-            source: "CrowdBot evaluation tools, relative time to goal",
-            about: "time to the goal of the same robot alone over the time to the goal",
-        },
-    ],
+    name: "unrecorded",
     thresholds: &[],
     measure: Measure::Whole { measure: nothing, why: "no recording holds what it needs" },
 };

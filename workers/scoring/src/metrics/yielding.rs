@@ -1,6 +1,6 @@
 //! Who gives way.
 
-use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::tracks::Track;
 
 /// Slowing by this share of the speed before is yielding.
@@ -10,37 +10,9 @@ const MEETING_M: f64 = 2.0;
 /// Only slowing in the last seconds before the closest approach counts, s.
 const BEFORE_SECS: f64 = 5.0;
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-const SOURCE: &str = "own, after Robot SF (time_to_yield, yield distance)";
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        Sheet {
-            id: "robot_yields",
-            unit: "share",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "share of the meetings in which one of the two slowed by 20 % in the last 5 s before the closest approach and the robot was the first",
-        },
-        Sheet {
-            id: "yield_distance",
-            unit: "m",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "mean surface distance at which the first of the two had slowed by 20 %",
-        },
-        Sheet {
-            id: "yield_lead",
-            unit: "s",
-            direction: Direction::Up,
-            needs: NEEDS,
-            source: SOURCE,
-            about: "mean time before the closest approach at which the first of the two had slowed by 20 %",
-        },
-    ],
+    name: "yielding",
     thresholds: &[("slowed_share", SLOWED_SHARE), ("meeting_m", MEETING_M), ("before_secs", BEFORE_SECS)],
     measure: Measure::Whole { measure, why: "who slowed first is known after the closest approach" },
 };

@@ -1,75 +1,15 @@
 //! Hall's zones around people.
 
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::metrics::{Begin, Family, Measure, Measured, count};
 use crate::running::{Below, Mean, Piece, Stretches};
 
 /// Outer limits of the intimate, personal and social zones, m (Hall 1966).
 pub(crate) const HALL_M: [f64; 3] = [0.45, 1.2, 3.6];
 
-const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
-
-const fn zone(id: &'static str, direction: Direction, about: &'static str) -> Sheet {
-    Sheet {
-        id,
-        unit: "%",
-        direction,
-        needs: NEEDS,
-        source: "Hall 1966; exclusive bands as in the code of HuNavSim",
-        about,
-    }
-}
-
-const fn within(id: &'static str, about: &'static str) -> Sheet {
-    Sheet {
-        id,
-        unit: "%",
-        direction: Direction::Down,
-        needs: NEEDS,
-        source: "Hall 1966; cumulative as in Okal and Arras 2016",
-        about,
-    }
-}
-
-const fn entries(id: &'static str, about: &'static str) -> Sheet {
-    Sheet {
-        id,
-        unit: "count",
-        direction: Direction::Down,
-        needs: NEEDS,
-        source: "SEAN 2.0, distance violations",
-        about,
-    }
-}
-
 /// The family.
 pub(super) const FAMILY: Family = Family {
-    sheets: &[
-        zone("zone_intimate", Direction::Down, "share of time with the closest human's surface nearer than 0.45 m"),
-        zone("zone_personal", Direction::Down, "share of time with the closest human's surface at 0.45 to 1.2 m"),
-        zone("zone_social", Direction::Neutral, "share of time with the closest human's surface at 1.2 to 3.6 m"),
-        zone("zone_public", Direction::Neutral, "share of time with the closest human's surface farther than 3.6 m"),
-        within("within_personal", "share of time with the closest human's surface nearer than 1.2 m"),
-        within("within_social", "share of time with the closest human's surface nearer than 3.6 m"),
-        entries("intimate_entries", "entries into a human's intimate zone (0.45 m), re-armed 0.05 m outside for 0.5 s"),
-        entries("personal_entries", "entries into a human's personal zone (1.2 m), re-armed 0.05 m outside for 0.5 s"),
-        entries(
-            "intimate_entries_by_robot",
-            "entries into an intimate zone with more than half of the closing speed from the robot",
-        ),
-        entries(
-            "intimate_entries_by_person",
-            "entries into an intimate zone with at least half of the closing speed from the person",
-        ),
-        entries(
-            "personal_entries_by_robot",
-            "entries into a personal zone with more than half of the closing speed from the robot",
-        ),
-        entries(
-            "personal_entries_by_person",
-            "entries into a personal zone with at least half of the closing speed from the person",
-        ),
-    ],
+    name: "zones",
     thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
     measure: Measure::Online(Begin(|humans| Box::new(Zones::new(humans)))),
 };
