@@ -5,14 +5,16 @@
 #   deploy/release.sh --out DIR x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu
 #   deploy/release.sh --binary FILE                     # packs a binary that is built already
 #
-# Whoever unpacks it needs no compiler, no Rust and no network: maps, requests, templates and the configuration are
-# in the binary. The same sources and compiler give the same archive.
+# An archive needs no compiler, no Rust and no network: maps, requests, templates and the configuration are in the
+# binary. The same sources and compiler give the same archive.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 fail() { echo "release: $*" >&2; exit 2; }
 need() { command -v "$1" >/dev/null 2>&1 || fail "\`$1\` is missing: $2"; }
 
+# Most that a program may take on a disk that was built here, bytes.
+largest=90000000
 out=target/release-archives binary='' targets=()
 while [ $# -gt 0 ]; do
   case "$1" in
@@ -80,6 +82,8 @@ for target in "${targets[@]}"; do
     strip_tool=${target%%-*}-linux-gnu-strip
   fi
   "$strip_tool" "$root/socrates"
+  size=$(stat -c %s "$root/socrates")
+  [ -n "$binary" ] || [ "$size" -le $largest ] || fail "the program has $size bytes, more than $largest"
   install -m 644 README.md LICENSE "$root/"
   install -m 644 deploy/socrates.toml "$root/socrates.toml.default"
   for paper in $papers; do
