@@ -40,7 +40,7 @@ fn progress(folder: &Path) -> usize {
 
 #[test]
 fn a_batch_survives_the_death_of_every_kind_of_process() {
-    survives(70);
+    survives(50);
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn two_hundred_scenarios_survive_the_death_of_every_kind_of_process() {
     survives(200);
 }
 
-/// Kills one process of every kind during a batch of this many scenarios, then its supervisor, and runs the batch to its end.
+/// Kills one process of every kind during a batch of `scenarios` scenarios, then its supervisor, and runs the batch to its end.
 fn survives(scenarios: usize) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("batch.toml");

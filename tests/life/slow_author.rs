@@ -88,8 +88,8 @@ fn slow(characters: u32) -> u16 {
 
 #[test]
 fn a_server_that_writes_slowly_is_not_a_silent_one_and_a_run_shows_how_much_is_there() {
-    // Eight seconds in all, of which it is never silent for one.
-    let port = slow(80);
+    // Four seconds in all, of which it is never silent for one.
+    let port = slow(40);
     let folder = tempfile::tempdir().unwrap();
     let url = format!("author.vllm.url=http://127.0.0.1:{port}/v1");
     let file = folder.path().join("slow.toml");

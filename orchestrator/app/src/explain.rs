@@ -24,7 +24,7 @@ fn metrics(talk: &Printer) {
     let mut rows = Vec::new();
     for family in CATALOG {
         let known = if family.waits().is_none() { "online" } else { "at the end" };
-        for sheet in family.sheets {
+        for sheet in family.sheets() {
             talk.line(&format!("{:<34} {:<10} {known:<11} {}", sheet.id, sheet.unit, sheet.about));
             rows.push(json!({ "id": sheet.id, "unit": sheet.unit, "online": family.waits().is_none() }));
         }

@@ -144,10 +144,10 @@ fn is(trigger: &Trigger, kind: &str, more: &[&str]) -> bool {
     }
 }
 
-/// The gate reads one set of so many.
+/// The gate reads every tenth set.
 const SAMPLE: usize = 10;
 
-/// Checks one set of `step` against its counts from the last change of the reader or of a set. Of the sets kept aside only the counts are
+/// Checks every `step`th set against its counts from the last change of the reader or of a set. Of the sets kept aside only the counts are
 /// shown.
 fn are_read_as_counted(step: usize) {
     let lines = sets().into_iter().step_by(step).map(|(name, corpus)| {
@@ -191,7 +191,7 @@ fn refused(case: &Case) -> Option<(Stage, Vec<Fault>)> {
     socrates_prompts::parse_behaviors(&Offline::answer(&ask), &ask).err().map(|faults| (Stage::Behaviors, faults))
 }
 
-/// Checks that at most one request in 200 is refused by a stage, in one open set of `step`. No answer is refused for its form; the stage of
+/// Checks that at most one request in 200 is refused by a stage, in every `step`th open set. No answer is refused for its form; the stage of
 /// paths may say that a map cannot hold something.
 #[expect(clippy::print_stdout, reason = "the figure is the purpose of the test")]
 fn are_answered(step: usize) {
