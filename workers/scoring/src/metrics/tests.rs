@@ -31,6 +31,14 @@ pub(crate) fn at_both_rates(walks: &dyn Fn() -> Vec<Walk>, seconds: f64, id: &st
 }
 
 #[test]
+fn every_family_has_its_sheets_in_the_file_and_no_sheet_is_of_none() {
+    let file: BTreeMap<String, Vec<Sheet>> = toml::from_str(FILE).unwrap();
+    let named: BTreeSet<&str> = CATALOG.iter().map(|family| family.name).collect();
+    assert_eq!(file.keys().map(String::as_str).collect::<BTreeSet<_>>(), named);
+    assert_eq!(named.len(), CATALOG.len());
+}
+
+#[test]
 fn ids_are_unique_and_every_family_gives_as_many_values_as_sheets() {
     let ids: BTreeSet<&str> = sheets().map(|sheet| sheet.id).collect();
     assert_eq!(ids.len(), sheets().count());
