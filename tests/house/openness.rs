@@ -99,3 +99,18 @@ fn weaknesses_are_reported_in_private_and_the_front_page_says_where() {
     assert!(text("SECURITY.md").contains("Report a vulnerability"));
     assert!(text("README.md").contains("](SECURITY.md)"));
 }
+
+#[test]
+fn the_first_command_of_the_readme_means_one_program() {
+    assert!(text("README.md").contains("\ncargo run --release -- demo"));
+    let workspace = toml_of("Cargo.toml");
+    let default: Vec<&str> =
+        workspace["workspace"]["default-members"].as_array().unwrap().iter().filter_map(toml::Value::as_str).collect();
+    let programs = |room: &&&str| {
+        let manifest = toml_of(&format!("{room}/Cargo.toml"));
+        manifest.contains_key("bin") || root().join(room).join("src/main.rs").is_file()
+    };
+    assert_eq!(default.iter().filter(programs).collect::<Vec<_>>(), [&"orchestrator/cli"]);
+    let tools = members().into_keys().filter(|room| !default.contains(&room.as_str()));
+    assert_eq!(tools.collect::<Vec<_>>(), ["tests/dev"]);
+}
