@@ -109,7 +109,7 @@ fn strike(folder: &Path, storm: &mut Storm, seed: u64, faults: usize, count: u64
 
 #[test]
 fn nothing_is_lost_and_nothing_doubled_in_a_short_storm() {
-    storm(1, 4, 20);
+    storm(1, 3, 16);
 }
 
 #[test]

@@ -44,30 +44,51 @@ fn with(at: &Path, name: &str, role: &str, args: &[&str]) -> Finished {
     socrates(at, name, &[args, &["--keys", keys.as_str()]].concat())
 }
 
-#[test]
-fn keys_of_other_roles_and_deployments_hand_in_no_work() {
+/// A cluster with keys at which a client is refused; no work may be there afterwards.
+fn hands_in_nothing(refuse: impl Fn(&Path, &str)) {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let (listen, _all) = cluster(at, &[]);
     let endpoint = format!("{listen}@main");
     let status = || with(at, "status", "client", &["status", &endpoint]);
     assert!(poll(|| (status().code == 0).then_some(())).is_some(), "the orchestrator never came: {}", status().err);
-    let submit = ["cluster", "submit", "mine.toml", "--connect", listen.as_str()];
-    for role in ["viewer", "worker", "driver", "router"] {
-        let refused = with(at, "refused", role, &submit);
-        assert_eq!(refused.code, 2, "{role}: {}", refused.err);
-        assert!(refused.err.contains(&format!("`{role}`")) && refused.err.contains("hint:"), "{role}: {}", refused.err);
-    }
-    let plain = socrates(at, "plain", &submit);
-    assert!(plain.code == 2 && plain.err.contains("needs keys"), "{}", plain.err);
-    let other = socrates(at, "other", &["cluster", "keys", "others"]);
-    assert_eq!(other.code, 0, "{}", other.err);
-    let stranger = socrates(at, "stranger", &[&submit[..], &["--keys", "others/client"]].concat());
-    assert!(stranger.code == 2 && stranger.err.contains("of another deployment"), "{}", stranger.err);
-    let clear = listen.replace("quic/", "tcp/");
-    let clear = socrates(at, "clear", &["cluster", "submit", "mine.toml", "--connect", clear.as_str()]);
-    assert!(clear.code == 2 && clear.err.contains("wants keys"), "{}", clear.err);
-    assert!(status().out.contains("0 of 0"), "somebody handed in work: {}", status().out);
+    refuse(at, &listen);
+    assert!(status().out.contains("0 of 0"), "work was handed in: {}", status().out);
+}
+
+#[test]
+fn keys_of_other_roles_and_none_hand_in_no_work() {
+    hands_in_nothing(|at, listen| {
+        let submit = ["cluster", "submit", "mine.toml", "--connect", listen];
+        for role in ["viewer", "worker", "driver", "router"] {
+            let refused = with(at, "refused", role, &submit);
+            assert_eq!(refused.code, 2, "{role}: {}", refused.err);
+            let says = refused.err.contains(&format!("`{role}`")) && refused.err.contains("hint:");
+            assert!(says, "{role}: {}", refused.err);
+        }
+        let plain = socrates(at, "plain", &submit);
+        assert!(plain.code == 2 && plain.err.contains("needs keys"), "{}", plain.err);
+    });
+}
+
+#[test]
+fn keys_of_another_deployment_hand_in_no_work() {
+    hands_in_nothing(|at, listen| {
+        let other = socrates(at, "other", &["cluster", "keys", "others"]);
+        assert_eq!(other.code, 0, "{}", other.err);
+        let submit = ["cluster", "submit", "mine.toml", "--connect", listen, "--keys", "others/client"];
+        let stranger = socrates(at, "stranger", &submit);
+        assert!(stranger.code == 2 && stranger.err.contains("of another deployment"), "{}", stranger.err);
+    });
+}
+
+#[test]
+fn a_client_in_clear_hands_in_no_work() {
+    hands_in_nothing(|at, listen| {
+        let clear = listen.replace("quic/", "tcp/");
+        let clear = socrates(at, "clear", &["cluster", "submit", "mine.toml", "--connect", clear.as_str()]);
+        assert!(clear.code == 2 && clear.err.contains("wants keys"), "{}", clear.err);
+    });
 }
 
 #[test]
