@@ -1,10 +1,13 @@
 //! The account: what an author says becomes of each sentence of a request, as the first part of its proposal.
 //!
 //! ```text
-//! "reading": {"s1": ["f1 human_1: a nurse waves", "f2 all: in the ward"],      asked for: id, who does it, words of the sentence
+//! "reading": {"s1": ["human_1.does.2: waves", "all: in the ward"],              asked for: line of the scenario, words of the sentence
 //!             "s2": ["setting"],                                                background
 //!             "s3": ["cannot_be_played: people have no hands"]}                 no part of any run; may stand beside what is asked for
 //! ```
+//!
+//! Where an answer is no scenario, a line begins with the id of a fact and the agent instead (`f1 human_1: a nurse waves`), and clauses name
+//! the id.
 
 use std::collections::BTreeMap;
 
@@ -91,7 +94,8 @@ impl Share {
             Self::Asked { claims, cannot } => {
                 let claim = |claim: &Claim| {
                     let of = claim.of.map_or_else(|| ALL.to_owned(), |of| of.to_string());
-                    format!("{} {of}: {}", claim.fact, claim.quote)
+                    let of = if claim.is_line() { String::new() } else { format!(" {of}") };
+                    format!("{}{of}: {}", claim.fact, claim.quote)
                 };
                 let cannot = cannot.as_ref().map(|why| format!("{CANNOT}: {why}"));
                 claims.iter().map(claim).chain(cannot).collect()
@@ -103,12 +107,20 @@ impl Share {
 /// One thing that a sentence asks for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// Id of the fact, which clauses name as their source.
+    /// Id of the fact, which clauses name as their source; where the answer is a scenario, its line, such as `human_1.does.2`.
     pub fact: String,
     /// Words of the sentence.
     pub quote: String,
     /// The agent that does it; none for what holds of the whole scene.
     pub of: Option<AgentId>,
+}
+
+impl Claim {
+    /// Whether it names a line of a scenario.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        ["all", "human_", "group.", "order.", "robot"].iter().any(|start| self.fact.starts_with(start))
+    }
 }
 
 /// Reads the account of an answer.
@@ -192,8 +204,16 @@ fn line(text: &str) -> Result<Line, String> {
         return Ok(Line::Cannot(after.chars().take(MOST_REASON).collect()));
     }
     let words: Vec<&str> = before.split_whitespace().collect();
-    let [fact, of] = words[..] else {
-        return Err(format!("`{text}` has no id and nobody who does it; expected `f1 human_1: words of it`"));
+    let (fact, of) = match words[..] {
+        [fact, of] => (fact, of),
+        // A line of a scenario is of the agent whose name it begins with; groups and orders are of nobody in particular.
+        [line] => (
+            line,
+            Some(line.split('.').next().unwrap_or(line))
+                .filter(|of| *of == "robot" || of.starts_with("human_"))
+                .unwrap_or(ALL),
+        ),
+        _ => return Err(format!("`{text}` names no line; expected `human_1.does.2: words of it`")),
     };
     let of = if of == ALL {
         None
@@ -232,9 +252,20 @@ mod tests {
     }
 
     #[test]
+    fn a_line_of_a_scenario_is_of_the_agent_that_it_names() {
+        let text = json!({"reading": {"s1": ["human_2.does.1: waves", "order.1: first", "robot.goal: to the exit", "all: two"]}});
+        let account = parse_account(&text.to_string()).unwrap();
+        let Share::Asked { claims, .. } = &account.0["s1"] else { panic!() };
+        let of: Vec<String> = claims.iter().map(|one| one.of.map_or_else(String::new, |of| of.to_string())).collect();
+        assert_eq!(of, ["human_2", "", "robot", ""]);
+        assert!(claims.iter().all(Claim::is_line));
+        assert_eq!(account.0["s1"].lines()[0], "human_2.does.1: waves");
+    }
+
+    #[test]
     fn every_wrong_share_is_named_with_what_is_allowed() {
         let text = json!({"reading": {
-            "s1": ["weather"], "s2": {}, "s3": ["cannot_be_played: "], "s4": ["f1 dog: x"], "s5": ["f1: x"], "s6": 7,
+            "s1": ["weather"], "s2": {}, "s3": ["cannot_be_played: "], "s4": ["f1 dog: x"], "s5": ["f1 human_1 x: y"], "s6": 7,
             "s7": ["setting", "f1 all: x"], "s8": ["setting", 3],
         }});
         let faults = parse_account(&text.to_string()).unwrap_err();

@@ -27,6 +27,7 @@ pub mod answer;
 pub mod building;
 pub mod json;
 pub mod opinion;
+pub mod scenario;
 pub mod schema;
 
 mod behaviors;
@@ -56,6 +57,7 @@ pub use message::{Message, Picture, Role};
 pub use passing::Passing;
 pub use prompt::{Prompt, Template, too_long};
 pub use question::Question;
+pub use scenario::parse_scenario;
 pub use schema::answer_schema;
 pub use sentences::{Sentence, sentences};
 pub use style::{BehaviorsForm, Image, MOST_VARIANTS, Mode, PathsForm, Style, Telling};

@@ -17,8 +17,9 @@ use crate::{
 };
 
 /// Version of the templates: rises with every change of what they ask for.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 const SYSTEM: &str = include_str!("../templates/system.md");
+const SCENARIO: &str = include_str!("../templates/scenario.md");
 const PROPOSAL: &str = include_str!("../templates/proposal.md");
 const PATHS: &str = include_str!("../templates/paths.md");
 const BEHAVIORS: &str = include_str!("../templates/behaviors.md");
@@ -145,14 +146,23 @@ impl Question {
             .collect();
         match self.stage {
             Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-                let reads = self.reading.by.is_author();
+                if self.reading.by.is_author() {
+                    let tables = vocabulary::scenario_tables();
+                    return fill(
+                        SCENARIO,
+                        [
+                            ("guided", guided.into()),
+                            ("reasons", account::reasons().join(", ").into()),
+                            ("tables", tables.into()),
+                            ("examples", shown.into()),
+                        ],
+                    );
+                }
                 fill(
                     PROPOSAL,
                     [
-                        ("reads", reads.into()),
                         ("guided", guided.into()),
                         ("pattern", self.reading.pattern.is_some().into()),
-                        ("reasons", account::reasons().join(", ").into()),
                         ("tables", vocabulary::proposal_tables().into()),
                         ("examples", shown.into()),
                         ("refused", examples::REFUSED_PROPOSAL.into()),
@@ -264,6 +274,9 @@ impl Question {
         let texts: Vec<&str> = TextKey::ALL.into_iter().map(|key| key.text_of(&self.request)).collect();
         let known = self.reading.by != ReadBy::AuthorAlone;
         let words = if known { Words::of(&texts.join(" ")) } else { Words::unknown() };
+        if self.reading.by.is_author() {
+            return String::new();
+        }
         let hints: String = hints::of(&words).map(|says| format!("{says}\n")).collect();
         // An author without a rough scenario may design with any test.
         let free = self.request.rough_scenario.is_none().then(Words::unknown);

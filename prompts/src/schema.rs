@@ -11,7 +11,7 @@ use socrates_model::{HumanId, PlaceClass, Rule};
 use crate::question::Question;
 use crate::sentences::sentences;
 use crate::style::{BehaviorsForm, PathsForm, Style};
-use crate::{account, order, place_text};
+use crate::{account, order, place_text, scenario};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.
 const MOST_IDS: usize = 250;
@@ -26,7 +26,7 @@ pub(crate) const THINKING: &str = "analysis";
 pub fn answer_schema(question: &Question, style: &Style) -> Value {
     match question.stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-            let one = proposal(question);
+            let one = if question.reading.by.is_author() { stated(question) } else { proposal(question) };
             let count = question.variants(style);
             if count > 1 { several(one, count) } else { one }
         }
@@ -117,17 +117,31 @@ fn proposal(question: &Question) -> Value {
         ("robot", robot),
         ("title", text()),
     ];
-    let reads = question.reading.by.is_author();
-    // What a model could not use stands in its account.
-    let account = if reads { (account::MEMBER, account_of(question)) } else { ("not_understood", list(&text())) };
+    let account = ("not_understood", list(&text()));
     let pattern = question.reading.pattern.as_ref().map(|_| ("pattern", text()));
     let mut schema = object(&members.into_iter().chain([account]).chain(pattern).collect::<Vec<_>>());
     let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
     let place = json!({"type": "string", "enum": places});
     define(&mut schema, &[("human", object(&human)), ("place", place)]);
-    if reads {
-        define(&mut schema, &[("lines", list(&text()))]);
-    }
+    strict(&mut schema, order::of(question.stage));
+    schema
+}
+
+/// An answer with a scenario: see [`scenario`].
+fn stated(question: &Question) -> Value {
+    let (stated, definitions) = scenario::schema();
+    let mut schema = object(&[
+        (THINKING, thinking()),
+        (account::MEMBER, account_of(question)),
+        ("title", text()),
+        ("description", text()),
+        (scenario::MEMBER, stated),
+        ("expected_behavior", text()),
+        ("notes", list(&text())),
+    ]);
+    let definitions: Vec<(&str, Value)> = definitions.iter().map(|(name, one)| (name.as_str(), one.clone())).collect();
+    define(&mut schema, &definitions);
+    define(&mut schema, &[("lines", list(&text()))]);
     strict(&mut schema, order::of(question.stage));
     schema
 }

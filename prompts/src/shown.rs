@@ -8,7 +8,7 @@ use socrates_model::{Behaviors, Paths, Proposal};
 use crate::question::Question;
 use crate::schema::keyed;
 use crate::style::{BehaviorsForm, Mode, Style};
-use crate::{account, order, terse, ways};
+use crate::{account, order, scenario, terse, ways};
 
 /// The refused answer of a question. What a stage had taken already, and what comes back to it after the simulation, is kept in full form
 /// and is put into that of the answer; other words come back as they are.
@@ -27,12 +27,20 @@ pub(crate) fn in_form(question: &Question, style: &Style, refused: &str) -> Opti
     match question.stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
             let kept: Proposal = serde_json::from_str(refused).ok()?;
-            let mut short = terse::shorten(&serde_json::to_value(kept).ok()?, keyed(question).is_some());
-            if let Some(members) = short.as_object_mut().filter(|_| question.reading.by.is_author()) {
-                members.remove(terse::NOT_UNDERSTOOD);
-                members.extend(question.account.iter().map(|account| (account::MEMBER.to_owned(), json!(account))));
+            match &question.reading.scenario {
+                Some(stated) => Some(json!({
+                    account::MEMBER: question.account, "title": kept.title, "description": kept.description,
+                    scenario::MEMBER: stated, "expected_behavior": kept.robot.expected_behavior, "notes": kept.notes,
+                })),
+                None => {
+                    let mut short = terse::shorten(&serde_json::to_value(kept).ok()?, keyed(question).is_some());
+                    if let Some(members) = short.as_object_mut().filter(|_| question.reading.by.is_author()) {
+                        members.remove(terse::NOT_UNDERSTOOD);
+                        members.extend(question.account.iter().map(|own| (account::MEMBER.to_owned(), json!(own))));
+                    }
+                    Some(short)
+                }
             }
-            Some(short)
         }
         Stage::Paths => {
             let kept: Paths = serde_json::from_str(refused).ok()?;

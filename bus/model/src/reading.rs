@@ -9,6 +9,7 @@ use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Relation, Side, WayPart};
 use crate::rule::{RobotRule, Rule};
+use crate::scenario::Scenario;
 use crate::statement::{Statement, TextKey};
 
 /// One thing that the text asks for.
@@ -219,6 +220,9 @@ pub struct Reading {
     /// What became of every clause of the texts, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub statements: Vec<Statement>,
+    /// The scenario as its author states it, where the author reads the texts: what is said above follows from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenario: Option<Scenario>,
     /// Assumptions that were made, in sentences.
     pub notes: Vec<String>,
     /// Wishes that cannot be read, placed or simulated.

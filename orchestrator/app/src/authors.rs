@@ -146,11 +146,10 @@ pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Diagno
 pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Diagnostic> {
     let word = config.text("author.paths_by");
     match word.as_str() {
-        "model" => Ok(BTreeMap::new()),
+        "solver" => Ok(BTreeMap::new()),
         // Rules have the solver anyway, and their results stay the same results.
-        "solver" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
-        "model_alone" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
-        "solver" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
+        "model" | "model_alone" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
+        "model" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
         _ => {
             let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, model_alone, solver");
             Err(Diagnostic::input(what, "`socrates config author` prints the manual"))
@@ -298,7 +297,7 @@ mod tests {
         assert!(told(&["author.key_variable=", "author.key_file=/no/such/key"]).contains("/no/such/key"));
         assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
         let by = |word: &str| paths_by(&config(&[&format!("author.paths_by={word}")]), &AuthorSpec::Auto);
-        assert!(by("model").unwrap().is_empty() && by("solver").unwrap()["paths_by"] == "solver");
+        assert!(by("solver").unwrap().is_empty() && by("model").unwrap()["paths_by"] == "model");
         assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, model_alone, solver"));
         let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
         assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");

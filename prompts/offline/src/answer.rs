@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 use socrates_model::job::Stage;
-use socrates_model::{Location, Proposal, Reading, Request};
+use socrates_model::{Location, Paths, Proposal, Reading, Request};
 use socrates_prompts::Question;
 use socrates_solver::Miss;
 
@@ -81,6 +81,20 @@ fn behaviors(question: &Question, proposal: &Proposal) -> String {
         ("author".to_owned(), json!(NAME)),
     ]));
     text(&answer)
+}
+
+/// The proposal of a request that is stated whole, such as [`socrates_model::Scenario::stated_in`] gives it.
+#[must_use]
+pub fn proposed(question: &Question) -> Proposal {
+    proposal::propose(question)
+}
+
+/// The paths of a proposal.
+///
+/// # Errors
+/// What the map lacks for them, and by how much.
+pub fn ways(question: &Question, proposal: &Proposal) -> Result<Paths, Miss> {
+    solve::solve(question, proposal)
 }
 
 /// Why a request can have no paths on a map, whatever is drawn; nothing where only the author finds that out.

@@ -86,7 +86,7 @@ mod tests;
 
 use socrates_model::{Location, Reading, Request};
 
-pub use answer::{Offline, impossible};
+pub use answer::{Offline, impossible, proposed, ways};
 pub use card::{Card, catalog};
 pub use desk::Draft;
 pub use edit::{Edited, edit, settled};

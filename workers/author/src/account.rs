@@ -63,7 +63,7 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
                         stated.len() + 1
                     ),
                 );
-            } else if !ids.insert(&claim.fact) {
+            } else if !claim.is_line() && !ids.insert(&claim.fact) {
                 let what = format!("has `{}`, which another fact has; give each fact its own id", claim.fact);
                 bad(format!("reading.{id}"), what);
             }
@@ -107,6 +107,7 @@ pub(crate) fn again(question: &Question) -> Option<Question> {
         return None;
     }
     let mut stated = socrates_offline::stated(&question.request, &question.location);
+    stated.scenario.clone_from(&question.reading.scenario);
     for fact in &question.reading.facts {
         let own = matches!(fact.kind, FactKind::Asked { .. });
         if !own && !stated.facts.iter().any(|other| other.id == fact.id) {

@@ -32,6 +32,7 @@ pub mod building;
 pub mod job;
 pub mod pictured;
 pub mod settings;
+mod stated;
 pub mod variants;
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_prompts::{Account, Passing, Question};
 
-use crate::attempt::{Written, check, checked, read};
+use crate::attempt::{AsRead, Written, check, checked, read};
 use crate::{account, compiled, paths_by};
 
 /// The question with an example of what passes, where an answer was refused and the program finds one: the refused proposal made right,
@@ -54,10 +54,16 @@ fn full(artifact: &impl Serialize) -> Option<String> {
 fn proposal(question: &Question) -> Option<Passing> {
     let (written, told) = read(question.refused.as_deref()?, question).ok()?;
     let Written::Proposal(bad) = &written else { return None };
+    // The program does not know what else a scenario could mean.
+    if told.as_ref().is_some_and(|told| told.scenario.is_some()) {
+        return None;
+    }
+    let told = told.map(|told| told.account);
     let mended = told.as_ref().map(|told| account::mended(told, question));
-    let reading = checked(&written, mended.as_ref(), question).0.unwrap_or_else(|| question.reading.clone());
+    let as_read = mended.clone().map(|account| AsRead { account, scenario: None });
+    let reading = checked(&written, as_read.as_ref(), question).0.unwrap_or_else(|| question.reading.clone());
     let good = passing_proposal(bad, &reading, &question.location, &question.request.task)?;
-    let faults = checked(&Written::Proposal(good.clone()), mended.as_ref(), question).1;
+    let faults = checked(&Written::Proposal(good.clone()), as_read.as_ref(), question).1;
     if !hard(&faults).is_empty() {
         return None;
     }

@@ -7,6 +7,7 @@ use socrates_prompts::{Mode, Question, Style};
 use socrates_solver::{Problem, Told};
 
 use crate::author::{Answer, AskError, Author, How};
+use crate::stated;
 
 /// Setting of a job that says who writes the paths, and its words.
 const SETTING: &str = "paths_by";
@@ -30,9 +31,9 @@ pub(crate) fn solver_from(
     style: &Style,
 ) -> Result<Option<u32>, AskError> {
     match settings.get(SETTING).map(String::as_str) {
-        None | Some(MODEL) => Ok((style.mode == Mode::Structured).then_some(REFUSALS + 1)),
+        None | Some(SOLVER) => Ok((style.mode == Mode::Structured).then_some(1)),
+        Some(MODEL) => Ok((style.mode == Mode::Structured).then_some(REFUSALS + 1)),
         Some(ALONE) => Ok(None),
-        Some(SOLVER) => Ok(Some(1)),
         Some(other) => {
             let message = format!("`{SETTING}`: `{other}` is unknown; allowed: {MODEL}, {ALONE}, {SOLVER}");
             Err(AskError::new(FaultCode::JRequest, message))
@@ -78,6 +79,13 @@ impl Author for BySolver {
 
 /// The paths of a proposal as text; where there are none, the reason under `cannot`, which is E-CANNOT.
 pub(crate) fn answer(question: &Question, proposal: &Proposal) -> String {
+    if let Some(asked) = stated::asked(question) {
+        return match socrates_offline::ways(&asked, proposal).map(|paths| serde_json::to_string_pretty(&paths)) {
+            Ok(Ok(text)) => text,
+            Ok(Err(why)) => serde_json::json!({ "cannot": why.to_string() }).to_string(),
+            Err(miss) => serde_json::json!({ "cannot": miss.to_string() }).to_string(),
+        };
+    }
     let former = question.refused.as_deref().and_then(|text| serde_json::from_str::<Paths>(text).ok());
     // What the task says in words is the model's to read: it stands in the proposal as classes of places.
     let problem = Problem {
@@ -143,7 +151,8 @@ mod tests {
         let settings = |word: &str| BTreeMap::from([(SETTING.to_owned(), word.to_owned())]);
         let from = |settings: &BTreeMap<String, String>| solver_from(settings, &Style::default());
         assert_eq!(from(&settings("solver")), Ok(Some(1)));
-        assert_eq!((from(&BTreeMap::new()), from(&settings("model_alone"))), (Ok(Some(3)), Ok(None)));
+        assert_eq!((from(&settings("model")), from(&settings("model_alone"))), (Ok(Some(3)), Ok(None)));
+        assert_eq!(from(&BTreeMap::new()), Ok(Some(1)));
         assert_eq!(from(&settings("oracle")).unwrap_err().code, FaultCode::JRequest);
         let naive = Style { mode: Mode::Naive, ..Style::default() };
         assert_eq!(solver_from(&BTreeMap::new(), &naive), Ok(None), "a baseline has no net");

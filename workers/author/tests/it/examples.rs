@@ -56,7 +56,7 @@ async fn what_is_shown_as_refused_is_refused_for_the_reason_that_is_given() {
         (Stage::Paths, style, examples::refused_paths(*form))
     });
     for (stage, style, shown) in proposal.into_iter().chain(paths) {
-        let (question, mut answer) = examples::worked(stage, &style, ReadBy::Author, true).remove(0);
+        let (question, mut answer) = examples::worked(stage, &style, ReadBy::Grammar, true).remove(0);
         let (part, told) = shown.trim_start_matches('`').split_once("`: ").unwrap();
         let part: serde_json::Value = serde_json::from_str(&format!("{{{part}}}")).unwrap();
         let (name, value) = part.as_object().unwrap().iter().next().unwrap();
