@@ -77,9 +77,9 @@ fn deeds() -> Vec<(Value, String)> {
         row(&Deed::MakeRoom, "for those who stand: out of the robot's way, and back once it has passed"),
         row(&Deed::Block, "stays in front of it"),
         row(&Deed::Approach, "comes up to it, to 1.2 m; `near_m` 0.7 to 2"),
-        row(&Deed::TurnBack, "walks back the way they came, from then on"),
+        row(&Deed::TurnBack, "walks back the way they came, from then on; for those who walk by their relation"),
         row(&Deed::GoTo(PlaceWord::Class(PlaceClass::Corridor)), "leaves the way for such a place, and stays there"),
-        row(&Deed::ChangePace, "walks on at the `pace` of the step"),
+        row(&Deed::ChangePace, "walks on at the `pace` of the step; for those who walk by their relation"),
     ]
 }
 
