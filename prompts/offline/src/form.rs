@@ -375,6 +375,16 @@ pub(crate) fn rooms(request: &Request, location: &Location) -> BTreeMap<HumanId,
         .collect()
 }
 
+/// The places by name where people's ways end.
+pub(crate) fn ends(request: &Request, location: &Location) -> BTreeMap<HumanId, Vec<NodeId>> {
+    let people = request.form.people();
+    let end = |human: &FormHuman| {
+        let nodes = bound(human.goal.as_ref()?, location)?.all_nodes(location);
+        (!human.relation.stands()).then_some(nodes)
+    };
+    people.iter().filter_map(|person| Some((person.id, end(person.human)?))).collect()
+}
+
 /// What the text says otherwise than the form, in one note: the form is played.
 pub(crate) fn differs(stated: &Reading, text: &Reading) -> Option<String> {
     let relations = |reading: &Reading| {

@@ -40,6 +40,7 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
         radius_m: question.request.robot.model.radius_m,
         via: via.or_else(|| task.via.map(|(class, _)| class)),
         rooms: if request.form.is_empty() { spot::rooms(question) } else { form::rooms(request, location) },
+        ends: form::ends(request, location),
         layout: layout(&proposal.pattern),
         told,
         draw: Draw::new(question.seed, purpose).bits(),

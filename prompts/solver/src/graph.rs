@@ -36,6 +36,8 @@ pub(crate) struct Net<'a> {
     between_m: f64,
     /// The rooms that people come out of by name.
     rooms: BTreeMap<HumanId, Vec<usize>>,
+    /// The places by name where people's ways end.
+    ends: BTreeMap<HumanId, Vec<usize>>,
     /// Nodes by name of which the robot's way has to lead past one; empty where it has not.
     pub(crate) past: Vec<usize>,
     /// Edges that nobody gets through.
@@ -64,9 +66,11 @@ impl<'a> Net<'a> {
         let (own, wide) = (of(problem.radius_m), of(problem.radius_m.max(PERSON_M)));
         let net = if wide.serves(&own, problem) { wide } else { own };
         let index = |ids: &Vec<NodeId>| ids.iter().filter_map(|id| net.index(id)).collect();
-        let rooms = problem.rooms.iter().map(|(human, ids)| (*human, index(ids))).collect();
+        let indexed =
+            |all: &BTreeMap<HumanId, Vec<NodeId>>| all.iter().map(|(human, ids)| (*human, index(ids))).collect();
+        let (rooms, ends) = (indexed(&problem.rooms), indexed(&problem.ends));
         let past = named_way::via(problem.proposal).iter().filter_map(|id| net.index(id)).collect();
-        Self { rooms, past, ..net }
+        Self { rooms, ends, past, ..net }
     }
 
     /// Whether edges are closed here and not there, and the task can be done without them.
@@ -115,6 +119,7 @@ impl<'a> Net<'a> {
             goal_m: Vec::new(),
             between_m: f64::INFINITY,
             rooms: BTreeMap::new(),
+            ends: BTreeMap::new(),
             past: Vec::new(),
             closed: Vec::new(),
             trees: RefCell::default(),
@@ -230,6 +235,11 @@ impl<'a> Net<'a> {
             }
             Some(_) | None => all,
         }
+    }
+
+    /// The places by name where somebody's way ends; empty where it is left open.
+    pub(crate) fn ends_of(&self, human: HumanId) -> &[usize] {
+        self.ends.get(&human).map_or(&[], Vec::as_slice)
     }
 
     /// How well a node suits as the end of a way that the robot's task names; 0 where it names none.

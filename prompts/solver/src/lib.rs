@@ -112,6 +112,8 @@ pub struct Problem<'a> {
     pub via: Option<PlaceClass>,
     /// Nodes of the rooms that people come out of by name.
     pub rooms: BTreeMap<HumanId, Vec<NodeId>>,
+    /// Nodes of the places by name where people's ways end.
+    pub ends: BTreeMap<HumanId, Vec<NodeId>>,
     /// What the pattern wants.
     pub layout: Layout,
     /// What was said of earlier answers.
@@ -136,6 +138,7 @@ impl<'a> Problem<'a> {
             radius_m: RobotModel::default().radius_m,
             via: None,
             rooms: BTreeMap::new(),
+            ends: BTreeMap::new(),
             layout: Layout::default(),
             told: Told::default(),
             draw: 0,

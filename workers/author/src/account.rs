@@ -108,8 +108,11 @@ pub(crate) fn again(question: &Question) -> Option<Question> {
     }
     let mut stated = socrates_offline::stated(&question.request, &question.location);
     stated.scenario.clone_from(&question.reading.scenario);
+    // What the author stated before binds nobody.
+    let before = question.reading.scenario.as_ref().map(|scenario| crate::stated::facts(scenario, question));
     for fact in &question.reading.facts {
-        let own = matches!(fact.kind, FactKind::Asked { .. });
+        let of_scenario = before.as_ref().is_some_and(|before| before.facts.iter().any(|own| own.kind == fact.kind));
+        let own = matches!(fact.kind, FactKind::Asked { .. }) || of_scenario;
         if !own && !stated.facts.iter().any(|other| other.id == fact.id) {
             stated.facts.push(fact.clone());
         }

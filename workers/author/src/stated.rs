@@ -26,7 +26,7 @@ pub(crate) fn asked(question: &Question) -> Option<Question> {
 }
 
 /// What a scenario says, as facts.
-fn facts(scenario: &Scenario, question: &Question) -> Reading {
+pub(crate) fn facts(scenario: &Scenario, question: &Question) -> Reading {
     let request = scenario.stated_in(&question.request);
     let mut reading = socrates_offline::stated(&request, &question.location);
     reading.task.clone_from(&question.reading.task);

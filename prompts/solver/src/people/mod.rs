@@ -86,6 +86,9 @@ pub(crate) struct Taken<'a> {
     pub(crate) entry: Option<usize>,
 }
 
+/// Cost of a way that does not end at the place by name where it should.
+const NO_END: f64 = 30.0;
+
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
 const BAD_END: f64 = 8.0;
 
@@ -124,7 +127,7 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
     if sides::walks_along(human.relation) && !sides::has_floor(taken.net, route, human, route.meet) {
         return None;
     }
-    match human.relation {
+    let way = match human.relation {
         Relation::Frontal => frontal::way(human, route, taken),
         Relation::Crossing => crossing::way(human, route, taken),
         Relation::Behind => behind::way(human, route, taken, along),
@@ -139,7 +142,26 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
         Relation::Leaving => leaving::way(human, route, taken),
         Relation::Staying => staying::way(human, route, taken),
         Relation::Aside => aside::way(human, route, taken),
-    }
+    };
+    way.map(|way| to_end(way, human, taken))
+}
+
+/// The way led on to the place by name where it ends, from the node after the meeting on and never back over its own nodes; dear where there
+/// is none, or where it begins there.
+fn to_end(way: Way, human: &HumanProposal, taken: &Taken<'_>) -> Way {
+    let (net, ends) = (taken.net, taken.net.ends_of(human.id));
+    let met = way.nodes.iter().position(|node| *node == way.meet);
+    let Some(met) = met.filter(|_| !ends.is_empty() && way.nodes.len() > 1) else { return way };
+    let head: Vec<usize> = way.nodes.iter().copied().take(met + 2).collect();
+    let (Some(first), Some(last)) = (head.first().copied(), head.last().copied()) else { return way };
+    let tree = net.tree(last, &|node| head.contains(&node));
+    let reached = ends.iter().copied().filter(|node| tree.length_m(*node).is_finite());
+    let cost = |node: usize| tree.length_m(node) + if taken.can_end(node) { 0.0 } else { BAD_END };
+    let end = reached.min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+    let away = |end: &usize| (net.at(*end) - net.at(first)).norm() >= ONWARD_M;
+    let Some(end) = end.filter(away) else { return Way { cost: way.cost + NO_END, ..way } };
+    let nodes: Vec<usize> = head.iter().copied().chain(tree.way(end).into_iter().skip(1)).collect();
+    Way { nodes, cost: way.cost + 0.1 * tree.length_m(end), ..way }
 }
 
 fn before_m(net: &Net<'_>, route: &Route) -> f64 {
