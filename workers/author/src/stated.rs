@@ -305,9 +305,11 @@ mod tests {
         );
         let reading = made.reading.unwrap();
         assert_eq!(reading.missing().len(), 1, "{:?}", reading.missing());
-        let served = |at: usize| match &reading.statements[at].became {
-            Became::Read { facts, lines } => (facts.len(), lines.len()),
-            other => panic!("{other:?}"),
+        let served = |at: usize| {
+            let Became::Read { facts, lines } = &reading.statements[at].became else {
+                panic!("{:?}", reading.statements)
+            };
+            (facts.len(), lines.len())
         };
         assert!(served(0).0 >= 2 && served(1).0 == 1 && served(0).1 >= 1, "{:?}", reading.statements);
         // The paths follow from the scenario as well.
