@@ -44,19 +44,20 @@ fn a_long_batch_is_made_bit_by_bit_collected_whole_and_ended_at_its_limit() {
     assert_eq!(checked.code, 0, "{}{}", checked.out, checked.err);
 
     // One that is drawn from while workers are there comes out as a run of the same requests does.
-    let short = submit(at, &endpoint, &["--variants", "8", "--seed", "2", "--batch", "short"]);
+    let short = submit(at, &endpoint, &["--variants", "20", "--seed", "2", "--batch", "short"]);
     assert_eq!(short.code, 0, "{}", short.err);
     let work = ["cluster", "work", "--connect", &endpoint, "--slots", "1", "--dir", "spool"];
     let work = start(PROGRAM, &work, at, "work").unwrap();
-    assert!(poll(|| (batch(at, &endpoint, "short")["done"] == 8).then_some(())).is_some(), "not all was made");
+    assert!(poll(|| (batch(at, &endpoint, "short")["done"] == 20).then_some(())).is_some(), "not all was made");
     let collect = ["cluster", "collect", "--connect", &endpoint, "--batch", "short", "--out", "collected"];
     let collected = socrates(at, "collected", &collect);
     assert_eq!(collected.code, 0, "{}{}", collected.out, collected.err);
-    let run = socrates(at, "run", &["run", "hall.toml", "--repeats", "--variants", "8", "--seed", "2", "--out", "own"]);
+    let run =
+        socrates(at, "run", &["run", "hall.toml", "--repeats", "--variants", "20", "--seed", "2", "--out", "own"]);
     assert_eq!(run.code, 0, "{}{}", run.out, run.err);
     let table = |library: &str| std::fs::read_to_string(at.join(library).join("index.csv")).unwrap();
     assert_eq!(table("collected"), table("own"));
-    assert_eq!(table("own").lines().count(), 9);
+    assert_eq!(table("own").lines().count(), 21);
 
     for (child, name) in [(work, "work"), (up, "up")] {
         assert!(signal(child.id(), "TERM").unwrap());

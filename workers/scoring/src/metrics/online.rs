@@ -22,7 +22,7 @@ use crate::metrics::{CATALOG, Measure, Measured, Need, valued};
 use crate::running::{Pen, Piece, Stretches};
 use crate::tracks::{Sample, between};
 
-/// So far back one looks for who closes in, s: just before a contact both still move as they meant to. Two rows, because
+/// Time looked back for the agent that closes in, s: just before a contact both still move as they meant to. Two rows, because
 /// velocities look one ahead.
 const BEFORE_SECS: f64 = 2.0 * EVEN_SECS;
 

@@ -9,7 +9,7 @@ use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 
 /// A swing of the speed of at least this is an oscillation, m/s.
 const SWING_MPS: f64 = 0.1;
-/// Who moves less than this in a second is not moving, m (SEAN 2.0).
+/// Least movement in a second of an agent that moves, m (SEAN 2.0).
 const MOVED_M: f64 = 0.05;
 /// A second on the even grid.
 const MOVED_STEPS: usize = 10;

@@ -8,7 +8,7 @@ use crate::tracks::Track;
 
 /// From this near on a person looks where the robot will pass, m.
 const LOOK_M: f64 = 6.0;
-/// Who is passed farther away than this is not passed, m.
+/// Largest distance at which a person counts as passed, m.
 const PASS_M: f64 = 3.0;
 /// The two goals lie so far to the left and to the right of the person, m.
 const BESIDE_M: f64 = 1.0;
@@ -35,7 +35,7 @@ fn beliefs(scene: &Scene<'_>, human: &Track) -> Option<Vec<(f64, f64)>> {
     let level = approach.iter().position(|(_, away)| away.dot(&ahead) >= 0.0)?;
     let (_, passing) = approach.get(level)?;
     let side = ahead.perp(passing);
-    // Who is run into, or left far aside, is passed on no side.
+    // A person that is run into, or left far aside, is passed on no side.
     if side.abs() < 0.1 || passing.norm() > PASS_M {
         return None;
     }

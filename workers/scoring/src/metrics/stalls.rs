@@ -33,7 +33,7 @@ impl Stalls {
     }
 
     fn step(&mut self, b: &Sample) {
-        // Who was away in between did not stand.
+        // A robot that was away in between did not stand.
         if let Some(a) = self.before.replace(*b).filter(|a| b.t - a.t < 1.5 * EVEN_SECS) {
             let turn = socrates_model::geometry::wrap_angle(b.yaw - a.yaw).abs() / (b.t - a.t).max(1e-9);
             let speed = (b.at - a.at).norm() / (b.t - a.t).max(1e-9);

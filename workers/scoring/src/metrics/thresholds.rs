@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn the_signature_is_that_of_the_thresholds_in_use() {
-        // Whoever changes a threshold changes this line, and with it what may be pooled.
+        // A changed threshold changes this line, and with it what may be pooled.
         assert_eq!(signature(), "standard-d3e87984a4fe");
     }
 }

@@ -7,7 +7,7 @@ use socrates_model::geometry::wrap_angle;
 
 /// Somebody this near to where it ends in the twin run is there, m.
 const THERE_M: f64 = 0.5;
-/// Who goes less than this in the twin run goes nowhere that could be delayed, m.
+/// Least way in the twin run of a person who can be delayed, m.
 const WALK_M: f64 = 1.0;
 /// Step of the grid for sums over changes, s.
 const EVEN_SECS: f64 = 0.1;
@@ -51,7 +51,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
             continue;
         }
         let there = |track: &Track| track.present().find(|s| (s.at - last.at).norm() <= THERE_M).map(|s| s.t);
-        // Who is still on its way at the end is at least that late.
+        // A person still on their way at the end is at least that late.
         let with = there(human).or_else(|| human.samples.last().map(|s| s.t));
         if let (Some(with), Some(without)) = (with, there(other)) {
             delays.push((with - without).max(0.0));

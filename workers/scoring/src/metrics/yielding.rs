@@ -1,4 +1,4 @@
-//! Who gives way.
+//! Giving way: the robot to people and people to the robot.
 
 use crate::metrics::{Family, Measure, Measured, Scene, count, or_why};
 use crate::tracks::Track;

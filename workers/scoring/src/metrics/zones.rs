@@ -27,7 +27,7 @@ impl Entries {
         Self { near: Stretches::below(limit_m, 0.05, 0.5), by_robot: 0, by_person: 0 }
     }
 
-    /// Who closes in has the entry; nobody where neither does.
+    /// Gives the entry to the agent that closes in; to none where neither does.
     fn add(&mut self, human: usize, piece: Option<Piece>, now: &Now<'_>) {
         if let Some(from_s) = self.near.add(piece)
             && let Some(share) = now.share(human, from_s)

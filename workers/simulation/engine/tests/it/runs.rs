@@ -19,10 +19,10 @@ fn on_a_few_ways_of_every_shipped_location_the_reference_arrives_and_meets_every
 }
 
 #[test]
-#[ignore = "sweep: one in 37 ways of every shipped location, every relation, at most 5 % with troubles"]
+#[ignore = "sweep: one in 34 ways of every shipped location, every relation, at most 5 % with troubles"]
 fn on_every_shipped_location_the_reference_arrives_and_meets_everybody() {
-    let Found { runs, bad, lines, berths } = look_at(37);
-    assert!(runs > 250 && f64::from(bad) <= 0.05 * f64::from(runs), "{bad} of {runs}: {}", lines.join("\n"));
+    let Found { runs, bad, lines, berths } = look_at(34);
+    assert!(runs > 300 && f64::from(bad) <= 0.05 * f64::from(runs), "{bad} of {runs}: {}", lines.join("\n"));
     // Nine of ten runs keep 0.28 m between robot and person; a person in a doorway is passed nearer.
     for relation in ["ahead", "frontal", "crossing"] {
         assert!(berths[relation] >= 0.28, "{relation}: {berths:?}");
