@@ -1,10 +1,14 @@
 //! The account: what an author says becomes of each sentence of a request, as the first part of its proposal.
 //!
 //! ```text
-//! "reading": {"s1": ["f1 human_1: a nurse waves", "f2 all: in the ward"],      asked for: id, who does it, words of the sentence
+//! "reading": {"s1": ["human_1.does.2: waves", "all: in the ward"],              asked for: line of the scenario, words of the sentence
 //!             "s2": ["setting"],                                                background
+//!             "s4": ["expected_behavior: keeps right"],                         asked of a robot under test, and no part of the setup
 //!             "s3": ["cannot_be_played: people have no hands"]}                 no part of any run; may stand beside what is asked for
 //! ```
+//!
+//! Where an answer is no scenario, a line begins with the id of a fact and the agent instead (`f1 human_1: a nurse waves`), and clauses name
+//! the id.
 
 use std::collections::BTreeMap;
 
@@ -20,6 +24,8 @@ pub(crate) const MEMBER: &str = "reading";
 const ALL: &str = "all";
 /// Word before the reason why something cannot be played.
 pub(crate) const CANNOT: &str = "cannot_be_played";
+/// Word before what a good robot does, which decides nothing about the scenario.
+pub(crate) const EXPECTED: &str = "expected_behavior";
 /// Longest reason that is kept, characters.
 const MOST_REASON: usize = 300;
 
@@ -54,7 +60,7 @@ impl Account {
             let share = match background {
                 Some(reason) => Share::Background(reason),
                 None if claims.is_empty() && cannot.is_none() && !stated => continue,
-                None => Share::Asked { claims, cannot },
+                None => Share::Asked { claims, expected: None, cannot },
             };
             account.0.insert(sentence.id, share);
         }
@@ -77,6 +83,8 @@ pub enum Share {
     Asked {
         /// What is played.
         claims: Vec<Claim>,
+        /// Words on what a robot under test should do; no part of the setup.
+        expected: Option<String>,
         /// Why a part of it, or all of it, is in no run.
         cannot: Option<String>,
     },
@@ -88,13 +96,15 @@ impl Share {
     pub fn lines(&self) -> Vec<String> {
         match self {
             Self::Background(reason) => vec![reason.name().to_owned()],
-            Self::Asked { claims, cannot } => {
+            Self::Asked { claims, expected, cannot } => {
                 let claim = |claim: &Claim| {
                     let of = claim.of.map_or_else(|| ALL.to_owned(), |of| of.to_string());
-                    format!("{} {of}: {}", claim.fact, claim.quote)
+                    let of = if claim.is_line() { String::new() } else { format!(" {of}") };
+                    format!("{}{of}: {}", claim.fact, claim.quote)
                 };
+                let expected = expected.as_ref().map(|words| format!("{EXPECTED}: {words}"));
                 let cannot = cannot.as_ref().map(|why| format!("{CANNOT}: {why}"));
-                claims.iter().map(claim).chain(cannot).collect()
+                claims.iter().map(claim).chain(expected).chain(cannot).collect()
             }
         }
     }
@@ -103,12 +113,20 @@ impl Share {
 /// One thing that a sentence asks for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// Id of the fact, which clauses name as their source.
+    /// Id of the fact, which clauses name as their source; where the answer is a scenario, its line, such as `human_1.does.2`.
     pub fact: String,
     /// Words of the sentence.
     pub quote: String,
     /// The agent that does it; none for what holds of the whole scene.
     pub of: Option<AgentId>,
+}
+
+impl Claim {
+    /// Whether it names a line of a scenario.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        ["all", "human_", "group.", "order.", "robot"].iter().any(|start| self.fact.starts_with(start))
+    }
 }
 
 /// Reads the account of an answer.
@@ -138,6 +156,7 @@ fn wrong(path: &str, message: impl Into<String>) -> Fault {
 /// One line of a sentence.
 enum Line {
     Background(Background),
+    Expected(String),
     Cannot(String),
     Claim(Claim),
 }
@@ -158,7 +177,7 @@ fn share(id: &str, value: &Value) -> Result<Share, Fault> {
         return Err(wrong(&format!(".{id}"), message));
     }
     let several = read.len() > 1;
-    let (mut claims, mut cannot) = (Vec::new(), Vec::new());
+    let (mut claims, mut expected, mut cannot) = (Vec::new(), Vec::new(), Vec::new());
     for line in read {
         match line {
             Line::Background(reason) if !several => return Ok(Share::Background(reason)),
@@ -169,12 +188,13 @@ fn share(id: &str, value: &Value) -> Result<Share, Fault> {
                 );
                 return Err(wrong(&format!(".{id}"), message));
             }
+            Line::Expected(words) => expected.push(words),
             Line::Cannot(why) => cannot.push(why),
             Line::Claim(claim) => claims.push(claim),
         }
     }
-    let cannot = (!cannot.is_empty()).then(|| cannot.join("; "));
-    Ok(Share::Asked { claims, cannot })
+    let joined = |words: Vec<String>| (!words.is_empty()).then(|| words.join("; "));
+    Ok(Share::Asked { claims, expected: joined(expected), cannot: joined(cannot) })
 }
 
 /// One line, or what is wrong with it.
@@ -188,12 +208,23 @@ fn line(text: &str) -> Result<Line, String> {
         return Err(format!("`{text}` is no line; allowed: {reasons}, `f1 human_1: words of it`, `{CANNOT}: why`"));
     };
     let after = after.trim();
-    if before.trim() == CANNOT {
-        return Ok(Line::Cannot(after.chars().take(MOST_REASON).collect()));
+    let words = || after.chars().take(MOST_REASON).collect();
+    match before.trim() {
+        CANNOT => return Ok(Line::Cannot(words())),
+        EXPECTED => return Ok(Line::Expected(words())),
+        _ => {}
     }
     let words: Vec<&str> = before.split_whitespace().collect();
-    let [fact, of] = words[..] else {
-        return Err(format!("`{text}` has no id and nobody who does it; expected `f1 human_1: words of it`"));
+    let (fact, of) = match words[..] {
+        [fact, of] => (fact, of),
+        // A line of a scenario is of the agent whose name it begins with; groups and orders have no agent.
+        [line] => (
+            line,
+            Some(line.split('.').next().unwrap_or(line))
+                .filter(|of| *of == "robot" || of.starts_with("human_"))
+                .unwrap_or(ALL),
+        ),
+        _ => return Err(format!("`{text}` names no line; expected `human_1.does.2: words of it`")),
     };
     let of = if of == ALL {
         None
@@ -225,16 +256,27 @@ mod tests {
         }});
         let account = parse_account(&text.to_string()).unwrap();
         assert_eq!(account.0["s2"], Share::Background(Background::Setting));
-        assert_eq!(account.0["s3"], Share::Asked { claims: Vec::new(), cannot: Some("nobody flies".into()) });
-        let Share::Asked { claims, cannot } = &account.0["s1"] else { panic!() };
+        assert_eq!(account.0["s3"], Share::Asked { claims: Vec::new(), expected: None, cannot: Some("nobody flies".into()) });
+        let Share::Asked { claims, cannot, .. } = &account.0["s1"] else { panic!() };
         assert_eq!((claims[0].of, claims[1].of.unwrap().to_string()), (None, "human_1".to_owned()));
         assert_eq!((claims[1].quote.as_str(), cannot.as_deref()), ("wave: and smile", Some("nobody smiles")));
     }
 
     #[test]
+    fn a_line_of_a_scenario_is_of_the_agent_that_it_names() {
+        let text = json!({"reading": {"s1": ["human_2.does.1: waves", "order.1: first", "robot.goal: to the exit", "all: two"]}});
+        let account = parse_account(&text.to_string()).unwrap();
+        let Share::Asked { claims, .. } = &account.0["s1"] else { panic!() };
+        let of: Vec<String> = claims.iter().map(|one| one.of.map_or_else(String::new, |of| of.to_string())).collect();
+        assert_eq!(of, ["human_2", "", "robot", ""]);
+        assert!(claims.iter().all(Claim::is_line));
+        assert_eq!(account.0["s1"].lines()[0], "human_2.does.1: waves");
+    }
+
+    #[test]
     fn every_wrong_share_is_named_with_what_is_allowed() {
         let text = json!({"reading": {
-            "s1": ["weather"], "s2": {}, "s3": ["cannot_be_played: "], "s4": ["f1 dog: x"], "s5": ["f1: x"], "s6": 7,
+            "s1": ["weather"], "s2": {}, "s3": ["cannot_be_played: "], "s4": ["f1 dog: x"], "s5": ["f1 human_1 x: y"], "s6": 7,
             "s7": ["setting", "f1 all: x"], "s8": ["setting", 3],
         }});
         let faults = parse_account(&text.to_string()).unwrap_err();

@@ -2,27 +2,27 @@
 
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use socrates_model::scenario::without_nulls;
 use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Where};
 
 use crate::conforms::{Misfit, differences};
 use crate::question::Question;
 use crate::schema::{THINKING, derived};
-use crate::{terse, ways};
+use crate::ways;
 
 /// Most differences named at once.
 const MOST: usize = 5;
 
-/// Reads a proposal, short or full, without its account; see [`crate::parse_account`]. `format` and `author` may be left out.
+/// Reads a proposal without its account; see [`crate::parse_account`]. `format` and `author` may be left out.
 ///
 /// # Errors
 /// Syntax faults with their position, or up to five E-SCHEMA faults with JSON path, expected and found.
-pub fn parse_proposal(text: &str, question: &Question) -> Result<Proposal, Vec<Fault>> {
+pub fn parse_proposal(text: &str) -> Result<Proposal, Vec<Fault>> {
     let mut value = crate::json::object(text)?;
     // The account is read apart.
     if let Some(members) = value.as_object_mut() {
         members.remove(crate::account::MEMBER);
     }
-    terse::expand(&mut value, &question.request.task);
     typed(prepared(value))
 }
 
@@ -69,18 +69,6 @@ pub(crate) fn schema_faults_at(path: &str, schema: &Value, value: &Value) -> Res
     Err(found.into_iter().take(MOST).map(fault).collect())
 }
 
-/// Strict schemas say nothing with `null`; the types say it by leaving the member out.
-fn without_nulls(value: &mut Value) {
-    match value {
-        Value::Object(members) => {
-            members.retain(|_, member| !member.is_null());
-            members.values_mut().for_each(without_nulls);
-        }
-        Value::Array(items) => items.iter_mut().for_each(without_nulls),
-        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -88,14 +76,10 @@ mod tests {
     use socrates_model::Signature;
     use socrates_model::job::Stage;
 
-    fn asked() -> Question {
-        question(Stage::Proposal)
-    }
-
     #[test]
     fn what_is_written_is_read_back() {
         let text = serde_json::to_string(&proposal()).unwrap();
-        assert_eq!(parse_proposal(&text, &asked()).unwrap(), proposal());
+        assert_eq!(parse_proposal(&text).unwrap(), proposal());
     }
 
     #[test]
@@ -107,7 +91,7 @@ mod tests {
         members.insert("analysis".into(), json!("two people, one corner"));
         members["humans"][0]["group"] = Value::Null;
         members["expected_events"][0]["source"] = Value::Null;
-        let read = parse_proposal(&value.to_string(), &asked()).unwrap();
+        let read = parse_proposal(&value.to_string()).unwrap();
         assert_eq!((read.format, read.author), (FORMAT, Signature::default()));
     }
 
@@ -117,7 +101,7 @@ mod tests {
         value["place"] = json!("moon");
         value["humans"][1]["relation"] = json!("sideways");
         value["robot"]["color"] = json!("red");
-        let faults = parse_proposal(&value.to_string(), &asked()).unwrap_err();
+        let faults = parse_proposal(&value.to_string()).unwrap_err();
         let places: Vec<String> = faults.iter().map(|fault| fault.at.to_string()).collect();
         assert_eq!(places, ["$.humans[1].relation", "$.place", "$.robot.color"]);
         assert!(

@@ -6,12 +6,11 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use socrates_bt::TreeSpec;
 use socrates_model::job::Stage;
-use socrates_model::reading::Fact;
 use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, ReadBy, Reading, Request, SceneGraph};
 
 use crate::question::Question;
 use crate::style::{BehaviorsForm, PathsForm, Style};
-use crate::{account, terse, ways};
+use crate::{account, scenario, ways};
 
 /// The map of the examples.
 pub(crate) const MAP: &str = include_str!("../examples/map.json");
@@ -19,10 +18,7 @@ pub(crate) const MAP: &str = include_str!("../examples/map.json");
 pub(crate) const ALL: [&str; 2] =
     [include_str!("../examples/crossing.json"), include_str!("../examples/overtaking.json")];
 
-/// An answer to the first example that is refused, with its fault: what a model gets wrong most easily.
-pub const REFUSED_PROPOSAL: &str =
-    "`\"setup\":[\"robot_keeps min_m=0.4\"]`: P-VERIFY, it judges what the robot does; that is an outcome.";
-/// The same of paths, in the form in which they are asked for.
+/// An answer to the first example that is refused, with its fault: paths in the form in which they are asked for.
 #[must_use]
 pub const fn refused_paths(form: PathsForm) -> &'static str {
     match form {
@@ -41,46 +37,41 @@ pub const fn refused_paths(form: PathsForm) -> &'static str {
 #[serde(deny_unknown_fields)]
 struct Example {
     request: Request,
-    facts: Vec<Fact>,
     /// The account of its sentences, as an author that reads it itself gives it.
     reading: Value,
+    scenario: Value,
     proposal: Proposal,
     paths: Paths,
 }
 
-/// Every worked example of a stage: its question, and the answer as it is shown in this style to an author that reads the request itself,
-/// or is told what the grammar read.
+/// Every worked example of a stage: its question, and the answer as it is shown in this style.
 ///
 /// Empty where the data cannot be read, which a test keeps from happening.
 #[must_use]
-pub fn worked(stage: Stage, style: &Style, by: ReadBy, keyed: bool) -> Vec<(Question, Value)> {
+pub fn worked(stage: Stage, style: &Style) -> Vec<(Question, Value)> {
     ALL.iter()
         .filter_map(|text| serde_json::from_str::<Example>(text).ok())
         .map(|example| {
-            let answer = answer(&example, stage, style, by, keyed);
-            let facts = if by.is_author() { Vec::new() } else { example.facts };
+            let answer = answer(&example, stage, style);
+            let reading = Reading { by: ReadBy::Author, ..Reading::default() };
             let question = Question {
                 stage,
                 proposal: (stage != Stage::Proposal).then_some(example.proposal),
-                ..Question::first(example.request, Reading { by, facts, ..Reading::default() }, location(), 1)
+                ..Question::first(example.request, reading, location(), 1)
             };
             (question, answer)
         })
         .collect()
 }
 
-fn answer(example: &Example, stage: Stage, style: &Style, by: ReadBy, keyed: bool) -> Value {
+fn answer(example: &Example, stage: Stage, style: &Style) -> Value {
     match stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-            let mut short = terse::shorten(&serde_json::to_value(&example.proposal).unwrap_or_default(), keyed);
-            if let Some(members) = short.as_object_mut() {
-                members.insert("analysis".to_owned(), json!("…"));
-                if by.is_author() {
-                    members.remove(terse::NOT_UNDERSTOOD);
-                    members.insert(account::MEMBER.to_owned(), example.reading.clone());
-                }
-            }
-            short
+            let proposal = &example.proposal;
+            json!({
+                "analysis": "…", account::MEMBER: example.reading, "title": proposal.title, "description": proposal.description,
+                scenario::MEMBER: example.scenario, "expected_behavior": proposal.robot.expected_behavior, "notes": [],
+            })
         }
         Stage::Paths => ways::written(&example.paths, style.paths, &location().graph),
         Stage::Behaviors => {
@@ -136,23 +127,21 @@ mod tests {
     fn every_example_has_the_whole_form_that_is_asked_for() {
         let style = Style::default();
         let mut seen = 0;
-        for (by, stage) in
-            [ReadBy::Grammar, ReadBy::Author].map(|by| [(by, Stage::Proposal), (by, Stage::Paths)]).concat()
-        {
-            for keyed in [true, false] {
-                for (question, answer) in worked(stage, &style, by, keyed) {
-                    // The other way of writing humans is for requests that state how many there are.
-                    if stage == Stage::Proposal && crate::schema::keyed(&question).is_some() != keyed {
-                        continue;
-                    }
-                    let missing = crate::conforms::differences("$", &crate::answer_schema(&question, &style), &answer);
-                    let told: Vec<String> = missing.iter().map(|one| format!("{one:?}")).collect();
-                    assert_eq!(told, Vec::<String>::new());
-                    seen += 1;
+        for stage in [Stage::Proposal, Stage::Paths] {
+            for (question, answer) in worked(stage, &style) {
+                seen += 1;
+                // Open members of a scenario may be absent: its parser decides.
+                if stage == Stage::Proposal {
+                    crate::parse_scenario(&answer.to_string()).unwrap();
+                    crate::parse_account(&answer.to_string()).unwrap();
+                    continue;
                 }
+                let missing = crate::conforms::differences("$", &crate::answer_schema(&question, &style), &answer);
+                let told: Vec<String> = missing.iter().map(|one| format!("{one:?}")).collect();
+                assert_eq!(told, Vec::<String>::new());
             }
         }
-        assert_eq!(seen, 12);
+        assert_eq!(seen, 4);
     }
 
     #[test]

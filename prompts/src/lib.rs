@@ -6,8 +6,7 @@
 //!                            proposal, paths, behaviors, or faults ◄── parse_*() ◄── text ┘
 //! ```
 //!
-//! An author that reads the request itself begins its proposal with an account of every sentence; one that is told what the grammar of the
-//! offline author read gets that instead. Each authoring stage has a template in `templates/`, worked examples in `examples/`, an answer schema with
+//! A model answers the first question with a scenario, which begins with an account of every sentence of the request. Each authoring stage has a template in `templates/`, worked examples in `examples/`, an answer schema with
 //! the names of the question in it, and a reader that turns text into a typed artifact or into faults that name the
 //! position. A style chooses how much is explained and in which form is answered; the reader takes every form.
 //! Tables in the prompts (triggers, actions, gestures, nodes) are made from the types and the node
@@ -27,12 +26,12 @@ pub mod answer;
 pub mod building;
 pub mod json;
 pub mod opinion;
+pub mod scenario;
 pub mod schema;
 
 mod behaviors;
 mod conforms;
 mod feedback;
-mod hints;
 mod order;
 mod passing;
 mod place_text;
@@ -42,6 +41,7 @@ mod terse;
 mod trees;
 mod vocabulary;
 mod ways;
+mod words;
 
 #[cfg(test)]
 mod hostile;
@@ -56,6 +56,7 @@ pub use message::{Message, Picture, Role};
 pub use passing::Passing;
 pub use prompt::{Prompt, Template, too_long};
 pub use question::Question;
+pub use scenario::parse_scenario;
 pub use schema::answer_schema;
 pub use sentences::{Sentence, sentences};
 pub use style::{BehaviorsForm, Image, MOST_VARIANTS, Mode, PathsForm, Style, Telling};

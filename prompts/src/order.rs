@@ -1,8 +1,8 @@
 //! The order in which the members of an answer are written: that in which one thinks.
 //!
-//! A server that enforces a schema has its members written in the order in which they stand there, and a model does as the examples do. So the
-//! scenario comes before its people, a human's way before what they do, a rule's triggers before its action, and what is tested at the
-//! end. Members that are not named here follow by their names.
+//! A server that enforces a schema has its members written in the order in which they stand there, and a model does as the examples do: the
+//! account before the scenario, a human's place before what they do, and a rule's triggers before its action. Members that are not named here
+//! follow by their names.
 
 use std::cmp::Ordering;
 
@@ -15,33 +15,26 @@ const PROPOSAL: &[&str] = &[
     "reading",
     "title",
     "description",
-    "pattern",
+    "scenario",
     "place",
-    "humans",
-    "groups",
     "robot",
-    "expected_events",
-    "not_understood",
+    "human",
+    "order",
     "notes",
     // Of a human, a group, the robot.
     "id",
     "role",
     "relation",
     "group",
-    "members",
-    "standing",
     "start",
     "goal",
-    "speed_mps",
-    "behavior",
-    "rules",
+    "when",
+    "act",
+    "for_s",
+    "until",
+    "say",
+    "to",
     "expected_behavior",
-    "script",
-    // Of the expected events.
-    "setup",
-    "outcome",
-    "source",
-    "test",
 ];
 
 const PATHS: &[&str] = &[

@@ -1,23 +1,18 @@
 //! An example of what passes, beside the reasons why an answer was refused: the parts in which the two differ.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use socrates_model::job::Stage;
 
 use crate::question::Question;
 use crate::style::Style;
-use crate::{order, parse_behaviors, parse_paths, parse_proposal, shown};
+use crate::{order, parse_behaviors, parse_paths, shown};
 
 /// An answer that passes the checks, made by the program from the refused one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Passing {
-    /// The proposal, paths or behaviors in full form, JSON.
+    /// The paths or behaviors in full form, JSON.
     pub answer: String,
-    /// Lines of the account for each sentence whose own are not taken; see [`crate::Account`].
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub reading: BTreeMap<String, Vec<String>>,
 }
 
 const INTRODUCTION: &str = "So it would pass the checks before a run, for instance (made by the program, which does not know what is meant):\n";
@@ -27,8 +22,7 @@ const INTRODUCTION: &str = "So it would pass the checks before a run, for instan
 pub(crate) fn told(question: &Question, style: &Style) -> String {
     let Some(passing) = &question.passing else { return String::new() };
     let Some(good) = shown::in_form(question, style, &passing.answer) else { return String::new() };
-    let mut lines: Vec<String> =
-        passing.reading.iter().map(|(id, lines)| format!("reading.{id}: {}", Value::from(lines.clone()))).collect();
+    let mut lines: Vec<String> = Vec::new();
     match (question.stage, refused(question, style)) {
         // Ways fit each other: a part of one answer is none of another.
         (Stage::Paths, _) => lines.push(order::written(&good, order::of(Stage::Paths))),
@@ -44,9 +38,7 @@ fn refused(question: &Question, style: &Style) -> Option<Value> {
     let kept = match question.stage {
         Stage::Paths => serde_json::to_string(&parse_paths(text, question).ok()?),
         Stage::Behaviors => serde_json::to_string(&parse_behaviors(text, question).ok()?),
-        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-            serde_json::to_string(&parse_proposal(text, question).ok()?)
-        }
+        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => return None,
     };
     shown::in_form(question, style, &kept.ok()?)
 }
@@ -83,7 +75,6 @@ fn differences(path: &str, bad: &Value, good: &Value, lines: &mut Vec<String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{proposal, question};
     use serde_json::json;
 
     #[test]
@@ -95,22 +86,5 @@ mod tests {
         let mut lines = Vec::new();
         differences("", &bad, &good, &mut lines);
         assert_eq!(lines, ["a.b: 2", "a.c, one more: {\"x\":1}", "a.gone: leave it out", "d[1]: 5", "new: true"]);
-    }
-
-    #[test]
-    fn a_refused_proposal_is_shown_what_would_pass_in_the_form_of_the_answer() {
-        let mut asked = question(Stage::Proposal);
-        let mut bad = proposal();
-        bad.expected_events.pop();
-        asked.refused = Some(serde_json::to_string(&bad).unwrap());
-        assert_eq!(told(&asked, &Style::default()), "");
-        asked.passing = Some(Passing {
-            answer: serde_json::to_string(&proposal()).unwrap(),
-            reading: BTreeMap::from([("s2".to_owned(), vec!["setting".to_owned()])]),
-        });
-        let text = told(&asked, &Style::default());
-        assert!(text.starts_with(INTRODUCTION) && text.contains("\nreading.s2: [\"setting\"]\n"), "{text}");
-        assert!(text.contains("expected_events.setup, one more: \"humans count=2\""), "{text}");
-        assert_eq!(text.lines().count(), 3, "{text}");
     }
 }

@@ -1,22 +1,16 @@
 //! JSON schemas of the answers, in the strict subset that servers enforce.
 
-use std::collections::BTreeSet;
-
 use serde_json::{Map, Value, json};
+use socrates_model::Rule;
 use socrates_model::job::Stage;
-use socrates_model::proposal::Relation;
-use socrates_model::reading::FactKind;
-use socrates_model::{HumanId, PlaceClass, Rule};
 
 use crate::question::Question;
 use crate::sentences::sentences;
 use crate::style::{BehaviorsForm, PathsForm, Style};
-use crate::{account, order, place_text};
+use crate::{account, order, place_text, scenario};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.
 const MOST_IDS: usize = 250;
-/// With more humans than this they are listed instead of keyed.
-const MOST_KEYED: u32 = 12;
 /// Room to think before the answer proper; the first member of every answer. Not read.
 pub(crate) const THINKING: &str = "analysis";
 
@@ -26,7 +20,7 @@ pub(crate) const THINKING: &str = "analysis";
 pub fn answer_schema(question: &Question, style: &Style) -> Value {
     match question.stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
-            let one = proposal(question);
+            let one = stated(question);
             let count = question.variants(style);
             if count > 1 { several(one, count) } else { one }
         }
@@ -59,75 +53,21 @@ fn text() -> Value {
     json!({"type": "string"})
 }
 
-/// How many humans the form has a member for, where their number is known; else they are listed.
-pub(crate) fn keyed(question: &Question) -> Option<u32> {
-    question.reading.facts.iter().find_map(|fact| {
-        if let FactKind::Humans(count) = fact.kind { Some(count).filter(|count| *count <= MOST_KEYED) } else { None }
-    })
-}
-
-/// The short form of a proposal. Humans are keyed by name where their number is known.
-fn proposal(question: &Question) -> Value {
-    let graph = &question.location.graph;
-    let found: BTreeSet<PlaceClass> = graph.nodes().iter().flat_map(|node| graph.classes(&node.id)).copied().collect();
-    let place = json!({"$ref": "#/$defs/place"});
-    let count = keyed(question);
-    let mut human = vec![
-        ("behavior", text()),
-        ("goal", or_null(&place)),
-        ("group", json!({"type": ["integer", "null"]})),
-        ("relation", json!({"type": "string", "enum": alternatives(&derived::<Relation>())})),
-        ("role", text()),
-        ("rules", list(&text())),
-        ("speed_mps", json!({"type": ["number", "null"]})),
-        ("start", or_null(&place)),
-    ];
-    let humans = match count {
-        Some(count) => {
-            let names: Vec<String> = (1..=count).map(|k| HumanId::new(k).to_string()).collect();
-            let each: Vec<(&str, Value)> =
-                names.iter().map(|name| (name.as_str(), json!({"$ref": "#/$defs/human"}))).collect();
-            object(&each)
-        }
-        None => {
-            human.push(("id", text()));
-            list(&json!({"$ref": "#/$defs/human"}))
-        }
-    };
-    let group = object(&[
-        ("id", json!({"type": "integer"})),
-        ("members", list(&text())),
-        ("standing", json!({"type": "boolean"})),
-    ]);
-    let events = object(&[("outcome", list(&text())), ("setup", list(&text()))]);
-    let robot = object(&[
-        ("expected_behavior", text()),
-        ("goal", or_null(&place)),
-        ("script", list(&text())),
-        ("start", or_null(&place)),
-    ]);
-    let members = [
+/// An answer with a scenario: see [`scenario`].
+fn stated(question: &Question) -> Value {
+    let (stated, definitions) = scenario::schema();
+    let mut schema = object(&[
         (THINKING, thinking()),
-        ("description", text()),
-        ("expected_events", events),
-        ("groups", list(&group)),
-        ("humans", humans),
-        ("notes", list(&text())),
-        ("place", place.clone()),
-        ("robot", robot),
+        (account::MEMBER, account_of(question)),
         ("title", text()),
-    ];
-    let reads = question.reading.by.is_author();
-    // What a model could not use stands in its account.
-    let account = if reads { (account::MEMBER, account_of(question)) } else { ("not_understood", list(&text())) };
-    let pattern = question.reading.pattern.as_ref().map(|_| ("pattern", text()));
-    let mut schema = object(&members.into_iter().chain([account]).chain(pattern).collect::<Vec<_>>());
-    let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
-    let place = json!({"type": "string", "enum": places});
-    define(&mut schema, &[("human", object(&human)), ("place", place)]);
-    if reads {
-        define(&mut schema, &[("lines", list(&text()))]);
-    }
+        ("description", text()),
+        (scenario::MEMBER, stated),
+        ("expected_behavior", text()),
+        ("notes", list(&text())),
+    ]);
+    let definitions: Vec<(&str, Value)> = definitions.iter().map(|(name, one)| (name.as_str(), one.clone())).collect();
+    define(&mut schema, &definitions);
+    define(&mut schema, &[("lines", list(&text()))]);
     strict(&mut schema, order::of(question.stage));
     schema
 }
@@ -383,19 +323,12 @@ mod tests {
     }
 
     #[test]
-    fn node_ids_humans_and_places_are_those_of_the_question() {
+    fn node_ids_and_humans_are_those_of_the_question() {
         for style in styles() {
             let schema = answer_schema(&question(Stage::Paths), &style);
             assert_eq!(schema["$defs"]["node"]["enum"], json!(["c", "e", "n", "w"]));
             assert_eq!(schema["properties"]["humans"]["required"], json!(["human_1", "human_2"]));
         }
-        let schema = answer_schema(&question(Stage::Proposal), &Style::default());
-        assert_eq!(schema["$defs"]["place"]["enum"], json!(["corridor", "intersection"]));
-        let mut counted = question(Stage::Proposal);
-        counted.reading.facts =
-            vec![serde_json::from_value(json!({"id": "f1", "quote": "", "kind": {"humans": 3}})).unwrap()];
-        let schema = answer_schema(&counted, &Style::default());
-        assert_eq!(schema["properties"]["humans"]["required"], json!(["human_1", "human_2", "human_3"]));
     }
 
     #[test]

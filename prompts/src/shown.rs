@@ -6,9 +6,8 @@ use socrates_model::job::Stage;
 use socrates_model::{Behaviors, Paths, Proposal};
 
 use crate::question::Question;
-use crate::schema::keyed;
 use crate::style::{BehaviorsForm, Mode, Style};
-use crate::{account, order, terse, ways};
+use crate::{account, order, scenario, ways};
 
 /// The refused answer of a question. What a stage had taken already, and what comes back to it after the simulation, is kept in full form
 /// and is put into that of the answer; other words come back as they are.
@@ -27,12 +26,11 @@ pub(crate) fn in_form(question: &Question, style: &Style, refused: &str) -> Opti
     match question.stage {
         Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
             let kept: Proposal = serde_json::from_str(refused).ok()?;
-            let mut short = terse::shorten(&serde_json::to_value(kept).ok()?, keyed(question).is_some());
-            if let Some(members) = short.as_object_mut().filter(|_| question.reading.by.is_author()) {
-                members.remove(terse::NOT_UNDERSTOOD);
-                members.extend(question.account.iter().map(|account| (account::MEMBER.to_owned(), json!(account))));
-            }
-            Some(short)
+            let stated = question.reading.scenario.as_ref()?;
+            Some(json!({
+                account::MEMBER: question.account, "title": kept.title, "description": kept.description,
+                scenario::MEMBER: stated, "expected_behavior": kept.robot.expected_behavior, "notes": kept.notes,
+            }))
         }
         Stage::Paths => {
             let kept: Paths = serde_json::from_str(refused).ok()?;
@@ -72,22 +70,22 @@ mod tests {
     }
 
     #[test]
-    fn what_a_stage_had_taken_comes_back_in_the_form_of_the_answer_and_is_read_as_the_same() {
-        let mut asked = testing::question(Stage::Proposal);
-        let proposal = testing::proposal();
-        asked.refused = Some(serde_json::to_string_pretty(&proposal).unwrap());
+    fn a_proposal_comes_back_as_the_scenario_that_it_was_made_from() {
+        let (mut asked, answer) = examples::worked(Stage::Proposal, &Style::default()).remove(0);
+        asked.refused = Some(serde_json::to_string_pretty(&testing::proposal()).unwrap());
+        asked.reading.scenario = Some(crate::parse_scenario(&answer.to_string()).unwrap().scenario);
         let text = shown(&asked, &Style::default());
         assert!(!text.contains("\"format\"") && !text.contains("predicate"), "{text}");
-        let read = crate::parse_proposal(&text, &asked).unwrap();
-        assert_eq!(read.humans, proposal.humans);
-        assert_eq!(read.expected_events.len(), proposal.expected_events.len());
+        let read = crate::parse_scenario(&text).unwrap();
+        assert_eq!(Some(read.scenario), asked.reading.scenario);
+        assert_eq!(read.beside.title, testing::proposal().title);
     }
 
     #[test]
     fn paths_come_back_in_each_form() {
         for form in PathsForm::ALL {
             let style = Style { paths: *form, ..Style::default() };
-            for (mut asked, answer) in examples::worked(Stage::Paths, &style, socrates_model::ReadBy::Grammar, true) {
+            for (mut asked, answer) in examples::worked(Stage::Paths, &style) {
                 let kept = crate::parse_paths(&answer.to_string(), &asked).unwrap();
                 asked.refused = Some(serde_json::to_string(&kept).unwrap());
                 let text = shown(&asked, &style);

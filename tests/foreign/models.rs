@@ -172,6 +172,9 @@ fn with_a_jump(paths: &str) -> String {
     value.to_string()
 }
 
+/// The arm in which the model is asked for paths as well.
+const PATHS: &str = "author.paths_by=model";
+
 /// What the server says to each question: a good proposal, first bad and then good paths. Behaviors are not asked for.
 fn fixtures(answers: &Answers) -> Value {
     let says = |marks: &str, text: &str| json!({"match": {"userMessage": marks}, "response": {"content": text}});
@@ -227,8 +230,12 @@ fn realised_over(author: &str, address: &str, key: &str) {
     std::fs::write(&file, KEY).unwrap();
     let url = address.replace("PORT", &mock.port.to_string());
     let (key, url) = (format!("author.{key}key_file={}", file.display()), format!("author.{key}url={url}"));
-    let (finished, json) =
-        make(folder, "model", WAREHOUSE, &["--author", author, "--set", key.as_str(), "--set", url.as_str()]);
+    let (finished, json) = make(
+        folder,
+        "model",
+        WAREHOUSE,
+        &["--author", author, "--set", key.as_str(), "--set", url.as_str(), "--set", PATHS],
+    );
     assert_eq!(json["verdict"], "realised", "{author}: {}\n{}", finished.err, finished.out);
     let provenance = provenance(folder, "model");
     let exchange = &exchanges(&provenance, "proposal")[0];
@@ -289,10 +296,10 @@ fn what_was_recorded_is_replayed_byte_for_byte_without_the_server() {
     let tape = folder.join("model-tape").display().to_string();
     let (url, record) =
         (format!("author.vllm.url=http://127.0.0.1:{}/v1", mock.port), format!("record:{tape}=vllm:small"));
-    let (finished, json) = make(folder, "live", WAREHOUSE, &["--author", &record, "--set", &url]);
+    let (finished, json) = make(folder, "live", WAREHOUSE, &["--author", &record, "--set", &url, "--set", PATHS]);
     assert_eq!(json["verdict"], "realised", "{}\n{}", finished.err, finished.out);
     drop(mock);
-    let (finished, json) = make(folder, "again", WAREHOUSE, &["--author", &format!("cassette:{tape}")]);
+    let (finished, json) = make(folder, "again", WAREHOUSE, &["--author", &format!("cassette:{tape}"), "--set", PATHS]);
     assert_eq!(json["verdict"], "realised", "{}\n{}", finished.err, finished.out);
     let (live, again) = (provenance(folder, "live"), provenance(folder, "again"));
     for stage in ["proposal", "paths", "behaviors"] {
@@ -321,7 +328,7 @@ fn realised_in(name: &str, request: &str, fates: &Fates<'_>) {
     let answers = answers_to(folder, WAREHOUSE, fates);
     let mock = Mock::start(&program, folder, &fixtures(&answers));
     let url = format!("author.vllm.url=http://127.0.0.1:{}/v1", mock.port);
-    let (finished, json) = make(folder, name, request, &["--author", "vllm:small", "--set", &url]);
+    let (finished, json) = make(folder, name, request, &["--author", "vllm:small", "--set", &url, "--set", PATHS]);
     assert_eq!(json["verdict"], "realised", "{}\n{}", finished.err, finished.out);
     assert_eq!(json["reading"]["by"], "author_alone", "{}", json["reading"]);
     let fates: Vec<&Value> =

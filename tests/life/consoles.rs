@@ -39,7 +39,8 @@ fn run(folder: &Path, console: &Console, line: &str, says: impl FnMut(u64, &str)
     std::fs::write(folder.join("my.toml"), WAREHOUSE).unwrap();
     let line = console.told[line].as_str().unwrap();
     let words: Vec<&str> = line.strip_prefix("socrates ").unwrap().split(' ').collect();
-    answered(folder, console, &[words.as_slice(), &["--out", "answered"]].concat(), says)
+    let paths = ["--set", "author.paths_by=model", "--out", "answered"];
+    answered(folder, console, &[words.as_slice(), paths.as_slice()].concat(), says)
 }
 
 /// Runs a command to its end while somebody says this to every question.
@@ -90,7 +91,8 @@ fn a_person_answers_a_run_and_what_they_said_is_a_cassette() {
     let tape = exchanges(&folder.join("tape"));
     assert_eq!(tape.len(), 2);
     assert!(tape.iter().all(|exchange| exchange["answer"]["model"] == "console:person"), "{tape:?}");
-    let (finished, again) = make(folder, "again", WAREHOUSE, &["--author", "cassette:tape"]);
+    let (finished, again) =
+        make(folder, "again", WAREHOUSE, &["--author", "cassette:tape", "--set", "author.paths_by=model"]);
     assert_eq!(again["verdict"], "realised", "{}\n{}", finished.err, finished.out);
     let artifact = |name: &str| std::fs::read(folder.join(name)).unwrap();
     assert_eq!(artifact("answered/details/paths.json"), artifact("bundle-again/details/paths.json"));

@@ -54,6 +54,7 @@ pub fn start_typed(
         .current_dir(folder)
         // A user's own settings must not reach the tests.
         .env_remove("OPENAI_API_KEY")
+        .env("SOCRATES_AUTHOR__KIND", "offline")
         .envs(variables.iter().copied())
         .stdin(std::fs::File::open(path("in"))?)
         .stdout(std::fs::File::create(path("out"))?)

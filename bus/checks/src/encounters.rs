@@ -45,7 +45,7 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> 
     faults.extend(too_few(paths, proposal));
     for human in &proposal.humans {
         let path = paths.humans.get(&human.id);
-        // Whoever stands where the robot starts is left, not met.
+        // A person who stands where the robot starts is left, not met.
         let left = path.is_some_and(|nodes| nodes.len() == 1 && nodes.first() == paths.robot.first());
         let met =
             matches!(human.relation, Relation::Staying | Relation::Aside) || human.relation == Relation::Static && left;
@@ -174,7 +174,7 @@ fn ends(
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
     let stands = own.len() == 1;
     let last = is_end(&paths.robot, robot_step);
-    // Who stands may be where the robot's way ends: it comes up to them, or joins their group.
+    // A person who stands may be where the robot's way ends: it comes up to them, or joins their group.
     let joined = stands;
     if is_start || last && !((indoors || stands) && at_car || joined) {
         let which = if last { "last" } else { "first" };
@@ -210,7 +210,7 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
         .iter()
         .filter(|clause| clause.must && clause.role == ClauseRole::Setup)
         .filter_map(|clause| {
-            if let Predicate::EncounterAt { place, nodes } = &clause.predicate {
+            if let Predicate::EncounterAt { place, nodes, human: None } = &clause.predicate {
                 Some(nodes).filter(|_| *place == wanted)
             } else {
                 None
@@ -220,9 +220,18 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
         .cloned()
         .collect();
     let of_class = |node: &NodeId| family(wanted).iter().any(|class| graph.node_is(node, *class));
-    let is_wanted = |node: &NodeId| if named.is_empty() { of_class(node) } else { named.contains(node) };
-    let candidates = if named.is_empty() { nodes_of(graph, wanted) } else { named.clone() };
+    let is_wanted = |human: HumanId, node: &NodeId| match proposal.own_place(human) {
+        Some(nodes) => nodes.contains(node),
+        None if named.is_empty() => of_class(node),
+        None => named.contains(node),
+    };
+    let candidates = |human: HumanId| match proposal.own_place(human) {
+        Some(nodes) => nodes.to_vec(),
+        None if named.is_empty() => nodes_of(graph, wanted),
+        None => named.clone(),
+    };
     let fits = |encounter: &Encounter| {
+        let is_wanted = |node: &NodeId| is_wanted(encounter.human, node);
         is_wanted(&encounter.node)
             || paths.robot.iter().position(|node| *node == encounter.node).is_some_and(|at| {
                 let before = at.checked_sub(1).and_then(|before| paths.robot.get(before));
@@ -232,7 +241,7 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
     if paths.encounters.iter().any(|encounter| graph.node(&encounter.node).is_none()) {
         return Vec::new();
     }
-    // Who walks with the robot meets it along the way; one meeting at the place is enough for them.
+    // A person who walks with the robot meets it along the way; one meeting at the place is enough for them.
     let along = |encounter: &Encounter| {
         proposal
             .human(encounter.human)
@@ -250,10 +259,13 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
         .filter(|encounter| !(fits(encounter) || once(encounter) || somewhere && along(encounter)))
         .map(|encounter| {
             let message = format!(
-                "meets the robot at `{}` ({}), but the proposal wants `{wanted}`; candidates: {}",
+                "meets the robot at `{}` ({}), but the proposal wants {}; candidates: {}",
                 encounter.node,
                 list(graph.classes(&encounter.node)),
-                list(candidates.iter().take(LISTED))
+                proposal
+                    .own_place(encounter.human)
+                    .map_or_else(|| format!("`{wanted}`"), |_| "another place".to_owned()),
+                list(candidates(encounter.human).iter().take(LISTED))
             );
             Fault::new(FaultCode::GType, encounter.human, message)
         })
@@ -312,7 +324,7 @@ mod tests {
             paths.robot = end.clone();
         };
         assert!(codes(|paths, proposal| joins(paths, proposal, true)).is_empty());
-        // Who stands alone may be come up to as well; who walks is not met where the robot stops.
+        // The robot may come up to a person who stands alone as well; it meets nobody who walks where it stops.
         assert!(codes(|paths, proposal| joins(paths, proposal, false)).is_empty());
         let leaves = |paths: &mut Paths, proposal: &mut Proposal| {
             with(paths, proposal, true);

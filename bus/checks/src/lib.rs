@@ -9,8 +9,6 @@
 //! found and what is allowed, because the author reads these words on the next attempt.
 //! [`model::fault::hard`](socrates_model::fault::hard) tells the faults that refuse an answer from the warnings.
 //!
-//! [`passing_proposal`] shows an author what a refused proposal could look like; nothing takes it in place of an answer.
-//!
 //! *Never here:* a file, a clock, a random number, a call of an author.
 
 mod behaviors;
@@ -19,7 +17,6 @@ mod free;
 mod groups;
 mod lexicon;
 mod limits;
-mod mend;
 mod nearest;
 mod people;
 mod places;
@@ -35,7 +32,6 @@ mod wishes;
 mod testing;
 
 pub use behaviors::check_behaviors;
-pub use mend::passing_proposal;
 pub use proposal::check_proposal;
 pub use repeats::check_repeats;
 pub use routes::check_paths;

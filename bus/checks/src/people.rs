@@ -138,7 +138,7 @@ fn abilities(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
 }
 
 /// What of a rule cannot be simulated.
-pub(crate) fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
+fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
     let mut wrong = Vec::new();
     if rule.when.is_empty() {
         wrong.push("has no trigger; give one or more, `always` for none in particular".to_owned());
@@ -199,7 +199,7 @@ pub(crate) fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec
 }
 
 /// P-OTHER: prose that depends on another human who is neither followed, heard nor of the same group.
-pub(crate) fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
+fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
     let tied = |id: HumanId| {
         let by_rule = human.rules.iter().any(|rule| {
             rule.act == Action::FollowHuman(id)

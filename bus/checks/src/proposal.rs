@@ -71,7 +71,7 @@ fn places(proposal: &Proposal, location: &Location) -> Vec<Fault> {
 }
 
 /// Words of a prose for places that the map lacks. Only words that are never used for another place are looked for.
-pub(crate) fn absent_in_prose(prose: &str, graph: &SceneGraph) -> Vec<(&'static str, PlaceClass)> {
+fn absent_in_prose(prose: &str, graph: &SceneGraph) -> Vec<(&'static str, PlaceClass)> {
     [
         ("elevator", PlaceClass::Elevator),
         ("lift", PlaceClass::Elevator),
@@ -157,7 +157,7 @@ pub(crate) fn robot_says(proposal: &Proposal) -> Vec<Gesture> {
     said
 }
 
-pub(crate) fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
+fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
     let mut wrong = Vec::new();
     let mut known = |id: &HumanId| {
         if proposal.human(*id).is_none() {
@@ -168,22 +168,31 @@ pub(crate) fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> 
         }
     };
     match &line.when {
-        RobotWhen::AtEncounter(id) => known(id),
+        RobotWhen::AtEncounter(id) | RobotWhen::Near(id, _) => known(id),
         RobotWhen::Start
         | RobotWhen::Blocked(_)
         | RobotWhen::HumanNear(_)
         | RobotWhen::HumanSays(_)
+        | RobotWhen::Did(_)
         | RobotWhen::AfterSecs(_) => {}
     }
     match &line.act {
         RobotDo::Follow(id) | RobotDo::Abreast(id) | RobotDo::Overtake(id) => known(id),
-        RobotDo::HoldUntil(RobotWhen::AtEncounter(id)) => known(id),
+        RobotDo::HoldUntil(RobotWhen::AtEncounter(id) | RobotWhen::Near(id, _)) => known(id),
         RobotDo::Say(_) | RobotDo::Hold(_) | RobotDo::HoldUntil(_) | RobotDo::WaitForLeavers | RobotDo::Lead(_) => {}
+    }
+    let own = proposal.robot.script.iter().position(|other| other == line).unwrap_or_default();
+    if let RobotWhen::Did(number) = line.when
+        && !usize::try_from(number).is_ok_and(|number| (1..=own).contains(&number))
+    {
+        wrong.push(format!("begins after line {number}; allowed: the number of a line before it"));
     }
     let number = match (&line.when, &line.act) {
         (_, RobotDo::Hold(s)) if !(*s > 0.0 && *s <= 60.0) => Some(("hold", *s, "0 to 60 s")),
         (_, RobotDo::Lead(m)) if !(*m >= 1.0 && *m <= 15.0) => Some(("lead", *m, "1 to 15 m")),
-        (RobotWhen::HumanNear(m), _) if !(*m >= 0.3 && *m <= 15.0) => Some(("human_near", *m, "0.3 to 15 m")),
+        (RobotWhen::HumanNear(m) | RobotWhen::Near(_, m), _) if !(*m >= 0.3 && *m <= 15.0) => {
+            Some(("human_near", *m, "0.3 to 15 m"))
+        }
         (RobotWhen::Blocked(s), _) if !(*s > 0.0 && *s <= 60.0) => Some(("blocked", *s, "0 to 60 s")),
         (RobotWhen::AfterSecs(s), _) if !(*s >= 0.0 && *s <= 600.0) => Some(("after_secs", *s, "0 to 600 s")),
         _ => None,

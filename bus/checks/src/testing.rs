@@ -134,7 +134,7 @@ pub(crate) fn crossing_proposal() -> Proposal {
         expected_events: vec![
             clause("c1", "", Predicate::Humans { count: 2 }),
             clause("c2", "f2", Predicate::Looks { human: first, for_s: 2.0 }),
-            clause("c3", "f3", Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] }),
+            clause("c3", "f3", Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![], human: None }),
             clause("c4", "", Predicate::Meets { human: second, within_m: 2.5 }),
         ],
         not_understood: Vec::new(),

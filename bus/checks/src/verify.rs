@@ -11,21 +11,9 @@ use crate::{limits, list};
 /// Every human needs a setup clause that must hold and speaks of it, or of its group.
 pub(crate) fn humans(proposal: &Proposal) -> Vec<Fault> {
     let message = "does their part without a clause that could show it";
-    unseen(proposal).map(|human| Fault::new(FaultCode::PVerify, human, message)).collect()
-}
-
-/// The humans of whom no setup clause that must hold speaks.
-pub(crate) fn unseen(proposal: &Proposal) -> impl Iterator<Item = HumanId> {
     let seen = |human: HumanId| must_setup(proposal).any(|clause| speaks_of(clause, human, proposal));
-    proposal.humans.iter().map(|human| human.id).filter(move |human| !seen(*human))
-}
-
-/// Whether a fact needs a clause of its own and has none, or only ones about others.
-pub(crate) fn is_unserved(fact: &Fact, proposal: &Proposal) -> bool {
-    needs_clause(&fact.kind)
-        && !must_setup(proposal).any(|clause| {
-            clause.source == fact.id && human_of(fact).is_none_or(|owner| speaks_of(clause, owner, proposal))
-        })
+    let unseen = proposal.humans.iter().map(|human| human.id).filter(|human| !seen(*human));
+    unseen.map(|human| Fault::new(FaultCode::PVerify, human, message)).collect()
 }
 
 /// Every reaction, gesture, place and group that was asked for needs a setup clause that names it as its source.
@@ -91,7 +79,7 @@ fn must_setup(proposal: &Proposal) -> impl Iterator<Item = &Clause> {
 }
 
 /// Whether a clause is about the human: directly, as the leader it follows, through its group, or by what it puts in order.
-pub(crate) fn speaks_of(clause: &Clause, human: HumanId, proposal: &Proposal) -> bool {
+fn speaks_of(clause: &Clause, human: HumanId, proposal: &Proposal) -> bool {
     let by_group = |id| proposal.groups.iter().any(|group| group.id == id && group.members.contains(&human));
     let led = matches!(&clause.predicate, Predicate::Follows { leader, .. } if *leader == human.into());
     let grouped = clause.predicate.group().is_some_and(by_group);
@@ -118,6 +106,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Facing { .. }
         | FactKind::Pace { .. }
         | FactKind::Goal { .. }
+        | FactKind::MeetsAt { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_)
@@ -135,7 +124,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
     }
 }
 
-pub(crate) const fn human_of(fact: &Fact) -> Option<HumanId> {
+const fn human_of(fact: &Fact) -> Option<HumanId> {
     match &fact.kind {
         FactKind::Reacts { human, .. }
         | FactKind::Gestures { human, .. }
@@ -144,6 +133,7 @@ pub(crate) const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::Side { human, .. }
         | FactKind::Pace { human, .. }
         | FactKind::Goal { human, .. }
+        | FactKind::MeetsAt { human, .. }
         | FactKind::Facing { human, .. } => Some(*human),
         FactKind::Asked { of } => {
             if let Some(AgentId::Human(human)) = of {

@@ -45,8 +45,13 @@ fn rough(kind: &FactKind, proposal: &Proposal) -> Option<(Where, String)> {
                 format!("no group has exactly the members {}", list(&wanted))
             })
         }
+        FactKind::Asked { of: Some(AgentId::Human(human)) } | FactKind::Reacts { human, .. }
+            if proposal.human(*human).is_none() =>
+        {
+            Some(((*human).into(), "is missing".to_owned()))
+        }
         FactKind::Reacts { human, rule } => {
-            let Some(found) = proposal.human(*human) else { return unless(false, *human, || "is missing".to_owned()) };
+            let found = proposal.human(*human)?;
             unless(found.rules.iter().any(|other| covers(other, rule)), *human, || {
                 format!("has no rule for: {}; its rules: {}", rule.phrase(), rules_in_words(&found.rules))
             })
@@ -110,6 +115,9 @@ fn rough(kind: &FactKind, proposal: &Proposal) -> Option<(Where, String)> {
         FactKind::Goal { human, name, .. } => {
             unless(proposal.human(*human)?.goal.is_some(), *human, || format!("does not go to {name}"))
         }
+        FactKind::MeetsAt { human, name, .. } => {
+            unless(proposal.own_place(*human).is_some(), *human, || format!("does not meet the robot at {name}"))
+        }
         FactKind::RobotDoes(line) => unless(robot.script.contains(line), Where::robot("script"), || {
             format!("has no line for: {}", line.phrase())
         }),
@@ -122,15 +130,9 @@ fn rough(kind: &FactKind, proposal: &Proposal) -> Option<(Where, String)> {
         FactKind::Pattern(card) => unless(proposal.pattern == *card, "pattern", || {
             format!("is `{}`, asked for was `{card}`", proposal.pattern)
         }),
-        FactKind::Asked { of: Some(AgentId::Human(human)) } => {
-            unless(proposal.human(*human).is_some(), *human, || "is missing".to_owned())
-        }
         // An empty task is P-ROBOT; whether prose means the same as prose is not judged here. Where the robot's way leads by name
         // is written from the facts, or given up with a note. People are counted apart.
-        FactKind::RobotTask(_)
-        | FactKind::RobotAt { .. }
-        | FactKind::Humans(_)
-        | FactKind::Asked { of: None | Some(AgentId::Robot) } => None,
+        FactKind::RobotTask(_) | FactKind::RobotAt { .. } | FactKind::Humans(_) | FactKind::Asked { .. } => None,
     }
 }
 

@@ -11,7 +11,7 @@ use crate::rule::{Action, RobotRule, Rule, Trigger};
 
 mod about;
 
-/// Whom a clause judges.
+/// What a clause judges: the setup, or the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ClauseRole {
@@ -52,7 +52,7 @@ pub enum Predicate {
     /// The human and the robot come within `within_m` of each other near its encounter node
     /// (both within 3 m of it), or anywhere where it has none; of several encounters, the first.
     Meets {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Largest distance between the two.
         within_m: f64,
@@ -60,23 +60,23 @@ pub enum Predicate {
     /// The human and the robot meet for the `nth` time: they come within `within_m` of each other near the human's nth
     /// encounter node (both within 3 m of it), after the robot has left the encounter before behind.
     MeetsAgain {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Which of its encounters, from 2.
         nth: u32,
         /// Largest distance between the two.
         within_m: f64,
     },
-    /// The human moves against the robot's heading as they first come within 6 m: at 150° to 180°, at 0.2 m/s and more, ahead of
-    /// the robot and closing, for 0.5 s. Somebody who stands as the robot comes is not head on.
+    /// The human moves against the robot's heading, or on its intended way (1.2 m to either side) against that, as they come nearer from
+    /// 10 m on: at 135° to 180°, at 0.2 m/s and more, ahead of the robot and closing, for 0.5 s. Somebody who stands as the robot comes is not head on.
     HeadOn {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// The human's way crosses the robot's at 45–135° where the paths meet (ways within 1 m of each other, both within 3 m of the
     /// encounter node), both there within `gap_s`. Somebody who stands there has no way that crosses.
     Crosses {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Largest difference of arrival times.
         gap_s: f64,
@@ -87,7 +87,7 @@ pub enum Predicate {
     /// beside it for 80 % of the time that both are level within 4 m; ahead, and where they never are, for 80 % of 1 s or more
     /// within 6 m.
     OnSide {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Which side.
         side: Side,
@@ -95,7 +95,7 @@ pub enum Predicate {
     /// The human stands and faces so, within 45° (60° of straight away from the robot), for 80 % of the time that the robot comes
     /// from 6 m to 3 m in view, and before they react; where that is not seen, from 3 m to 1 m. 0.3 s at least.
     Faces {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Where.
         facing: Facing,
@@ -103,7 +103,7 @@ pub enum Predicate {
     /// The human walks ahead of the robot on its way (1.2 m to either side), within `within_m` and away from it at 0.1 m/s and
     /// more, for `for_s` without a break. Somebody who stands, or comes towards it, does not.
     Ahead {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Largest distance.
         within_m: f64,
@@ -113,21 +113,21 @@ pub enum Predicate {
     /// The human overtakes the robot: first 0.5 m behind, then 0.5 m ahead, walking the same way (within 45°, at 0.2 m/s and
     /// more), within 3 m.
     Overtakes {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// The robot passes the human: first 0.5 m ahead of it, then 0.5 m behind, within 3 m.
     RobotPasses {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// The follower goes behind the leader, within 1.2 m of its trail, gap within `gap_m`, for `for_s` in one stretch in which the
     /// two go together: 0.5 m and 0.1 m/s at least, the follower at a third of the leader's pace. To stand behind a leader who
     /// drives off is not to follow.
     Follows {
-        /// Who follows.
+        /// The follower.
         follower: AgentId,
-        /// Who leads.
+        /// The leader.
         leader: AgentId,
         /// Smallest and largest gap along the way, m.
         gap_m: [f64; 2],
@@ -160,7 +160,7 @@ pub enum Predicate {
         /// Smallest and largest angle between course and heading, 0 (same way) to 180 (oncoming).
         angle_deg: [f64; 2],
     },
-    /// So many people per square meter are in the disc about the robot, for `for_s` without a break.
+    /// A density of people is in the disc about the robot, for `for_s` without a break.
     Density {
         /// Smallest and largest density, people per m².
         per_m2: [f64; 2],
@@ -188,7 +188,7 @@ pub enum Predicate {
     /// The human is in the robot's way: within 2.5 m, less than 0.6 m from its line and 1.2 m from its intended way, for `for_s`,
     /// and comes towards it at 0.7 m/s at most. Somebody who walks up to the robot and past it does not block it.
     Blocks {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// For how long.
         for_s: f64,
@@ -197,7 +197,7 @@ pub enum Predicate {
     /// turned by 15° in the 2 s before or meanwhile, by 2° where its tree says that it looks: whoever stands there facing that way
     /// by chance does not look.
     Looks {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// For how long.
         for_s: f64,
@@ -205,29 +205,29 @@ pub enum Predicate {
     /// The human stands still (below 0.1 m/s) for `for_s`, with the robot within 15 m at some time of it. Where that is done for a
     /// reason: after it, and not by standing there before it without any act.
     StandsStill {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// For how long.
         for_s: f64,
     },
     /// The human gets away from the robot: distance grows by `by_m` within 6 s of the trigger, half of it by the human's own way.
     RunsAway {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// By how much.
         by_m: f64,
     },
-    /// The human leaves the robot's line free: at least 0.7 m beside it as the robot passes (within 3 m), having gone 0.3 m by
-    /// themselves since the reason and come 0.2 m farther from the line. Somebody who stands beside it all the time gives no way.
+    /// The human leaves the robot's line free: at least 0.6 m beside it as the robot passes (within 3 m), having gone 0.2 m by
+    /// themselves since the reason and come 0.15 m farther from the line. Somebody who stands beside it all the time gives no way.
     GivesWay {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// After the trigger first holds, the action is seen within `within_s`; and not before it. Seen is the motion, and where the
     /// recording tells leaves the leaf too. A motion is the human's own: 0.5 m for who follows, 0.3 m for who comes up to the
-    /// robot, gets away from it, or goes to the side of its line.
+    /// robot or gets away from it, 0.2 m for a step to the side of its line.
     Reacts {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// All of these must hold.
         when: Vec<Trigger>,
@@ -239,7 +239,7 @@ pub enum Predicate {
     /// A step of the human's sequence is done as its rule says: it begins within `within_s` of the time at which all its triggers
     /// first hold, and not before; it is done for at least 60 % of its time; and it is over within 2 s of what ends it.
     Step {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// What the step says.
         rule: Rule,
@@ -257,18 +257,18 @@ pub enum Predicate {
         /// Largest delay.
         within_s: f64,
     },
-    /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m. What the log tells counts where the states
+    /// The agent makes the gesture, the robot (or the human it speaks to) within 12 m. What the log tells counts where the states
     /// show it within 0.25 s.
     Gestures {
-        /// Who.
+        /// The agent.
         agent: AgentId,
         /// Which.
         gesture: Gesture,
     },
-    /// The human makes the gesture to somebody: stands within 8 m of them and faces them (20°) for 60 % of the time of the gesture;
+    /// The human makes the gesture to a listener: within 12 m of them, and faces them (20°) or walks for 60 % of the time of the gesture;
     /// the robot does not stop by a gesture that is made to somebody else.
     GesturesTo {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Which.
         gesture: Gesture,
@@ -277,20 +277,20 @@ pub enum Predicate {
     },
     /// The human walks back: for at least 2 m, with the heading turned by 150° or more from that before.
     TurnsBack {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// After the reason for it the human comes within 1 m of one of the nodes, from 2 m and more away
-    /// as they begin.
+    /// as they begin; or is as near as never before when the run ends, by half of that distance.
     GoesTo {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The nodes of the place.
         nodes: Vec<NodeId>,
     },
     /// The human walks at another speed than before: the mean over 3 s of walking differs by 25 % or more, toward the speed asked for.
     ChangesPace {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The speed from then on, m/s.
         mps: f64,
@@ -298,36 +298,36 @@ pub enum Predicate {
     /// The human stands beside the robot's way all the time: they go 0.5 m at most, unless an act of theirs leads them, the robot
     /// comes within 8 m of them, and is never nearer than 0.9 m.
     StaysAside {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// The human makes room and closes up again: gives way as the robot passes, as [`Predicate::GivesWay`] says, and is back within
     /// 0.7 m of where they stood within 10 s after it has passed.
     MakesRoom {
-        /// Who.
+        /// The human.
         human: HumanId,
     },
     /// The human walks at this speed before the first act that changes how they go: the largest mean over 2 s of walking without a
     /// break is within 15 % of it. Of somebody whose acts leave no such time before them, the time between and after them counts, up to
     /// where they change their pace.
     Walks {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The speed, m/s.
         mps: f64,
     },
     /// The human goes to one of the nodes, which their planned way ends at: they start 2.5 m and more away from it, and end within
     /// 1.5 m of it, or in its room or car. Where the run ends first, they are on their way (2 m to either side), get on by 0.2 m in its last 2 s,
-    /// and have half of the way at most before them that they had as the robot was nearest.
+    /// and have half of the way behind them that they had before them as the robot was nearest.
     GetsTo {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The nodes of the place.
         nodes: Vec<NodeId>,
     },
     /// The human starts inside the door and crosses its line outward exactly once.
     Leaves {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The door, or empty for the door of the human's first node; where its room has none, the opening.
         #[serde(default)]
@@ -335,7 +335,7 @@ pub enum Predicate {
     },
     /// The human is behind the door for the whole run.
     StaysInside {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The door, or empty for the door of the human's first node; where its room has none, the opening.
         #[serde(default)]
@@ -343,7 +343,7 @@ pub enum Predicate {
     },
     /// The human starts outside the door and crosses its line inward exactly once.
     Enters {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// The door, or empty for that of the human's last node, the opening of its room, or the nearest door.
         #[serde(default)]
@@ -357,10 +357,10 @@ pub enum Predicate {
         /// Smallest and largest distance of the robot.
         robot_m: [f64; 2],
     },
-    /// There is no line of sight between the human and the robot until they are within `within_m`,
+    /// There is no line of sight of 12 m or less between the human and the robot until they are within `within_m`,
     /// or until the door opens.
     HiddenUntil {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Distance of first sight.
         within_m: f64,
@@ -397,26 +397,29 @@ pub enum Predicate {
     /// One is there 0.3 s and more before the other: two humans, each at its encounter node (within 1.5 m, or nearest to it within
     /// 3 m), or a human and the robot at the human's. At a door whoever comes out goes outward, whoever goes in inward.
     Before {
-        /// Who is there first.
+        /// The agent that is there first.
         first: AgentId,
-        /// Who is there later.
+        /// The agent that is there later.
         then: AgentId,
         /// Whether at the door of the room or car of whoever leaves it, or of the robot's goal, instead: the first of them gets through it first.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         at_door: bool,
     },
-    /// The encounter lies on a place of this class, or on one of the nodes where some are named, and happens there: the human, the
-    /// robot and the node are once within 4 m of each other.
+    /// The encounter lies on a place of this class, or on one of the nodes where some are named, and happens there: the human is within
+    /// 4 m of the node while the robot is within 6 m of the human.
     EncounterAt {
         /// The class.
         place: PlaceClass,
         /// The nodes that count, where one place of the class is meant: `the kitchen`. Empty: every node of the class.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         nodes: Vec<NodeId>,
+        /// The human whose encounter it is. Default: any.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        human: Option<HumanId>,
     },
     /// The agent comes within `within_m` of the node.
     Reaches {
-        /// Who.
+        /// The agent.
         agent: AgentId,
         /// Where.
         node: NodeId,
@@ -425,7 +428,7 @@ pub enum Predicate {
     },
     /// The agent is within `within_m` of the node when the run begins.
     StartsAt {
-        /// Who.
+        /// The agent.
         agent: AgentId,
         /// Where.
         node: NodeId,
@@ -442,7 +445,7 @@ pub enum Predicate {
     },
     /// The human and the robot get to the human's encounter node (within 1.5 m) at most `gap_s` apart.
     OnTime {
-        /// Who.
+        /// The human.
         human: HumanId,
         /// Largest difference of arrival times.
         gap_s: f64,

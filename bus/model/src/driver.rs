@@ -171,7 +171,7 @@ pub struct MissionAnswer {
     pub look_ahead_m: f64,
     /// Which people it wants to be shown.
     #[serde(default)]
-    pub people: Shown,
+    pub people: ShownPeople,
     /// Whether it wants the lidar scan with every step.
     #[serde(default)]
     pub lidar: bool,
@@ -194,7 +194,7 @@ const fn look_ahead() -> f64 {
 /// Which people a driver is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shown {
+pub enum ShownPeople {
     /// Those in sight of the one who is driven.
     #[default]
     Seen,
@@ -344,7 +344,7 @@ mod tests {
     #[test]
     fn the_least_answer_is_a_version() {
         let answer = MissionAnswer::read(br#"{"version": 1}"#).unwrap();
-        assert_eq!((answer.rate_hz, answer.people, answer.lidar, answer.map), (10.0, Shown::Seen, false, false));
+        assert_eq!((answer.rate_hz, answer.people, answer.lidar, answer.map), (10.0, ShownPeople::Seen, false, false));
     }
 
     /// Commands as bundles of before hold them.

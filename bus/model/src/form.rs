@@ -123,7 +123,7 @@ pub struct FormOrder {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotStep {
-    /// When. Default: from the start.
+    /// When. Default: from the start, or once the line before is over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub when: Option<RobotMoment>,
     /// What.
@@ -141,6 +141,8 @@ pub enum RobotMoment {
     Blocked(f64),
     /// Somebody is within so many m.
     HumanNear(f64),
+    /// This person is within a distance, m.
+    Near(String, f64),
     /// Somebody makes this gesture.
     HumanSays(Gesture),
     /// It is where it meets this person.
@@ -155,6 +157,7 @@ impl RobotMoment {
         ("start", "\"start\""),
         ("blocked", "{ blocked = 2.0 }"),
         ("human_near", "{ human_near = 3.0 }"),
+        ("near", "{ near = [\"nurse\", 3.0] }"),
         ("human_says", "{ human_says = \"WAIT\" }"),
         ("at_encounter", "{ at_encounter = \"nurse\" }"),
         ("after_secs", "{ after_secs = 5.0 }"),
@@ -163,14 +166,14 @@ impl RobotMoment {
     pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
         match self {
             Self::Blocked(s) => Some((*s, [0.1, 60.0], "s")),
-            Self::HumanNear(m) => Some((*m, [0.3, 15.0], "m")),
+            Self::HumanNear(m) | Self::Near(_, m) => Some((*m, [0.3, 15.0], "m")),
             Self::AfterSecs(s) => Some((*s, [0.1, 600.0], "s")),
             Self::Start | Self::HumanSays(_) | Self::AtEncounter(_) => None,
         }
     }
 
     pub(crate) const fn names(&self) -> Option<&String> {
-        if let Self::AtEncounter(id) = self { Some(id) } else { None }
+        if let Self::AtEncounter(id) | Self::Near(id, _) = self { Some(id) } else { None }
     }
 }
 
@@ -197,6 +200,11 @@ pub enum RobotDeed {
 }
 
 impl RobotDeed {
+    /// Whether the robot stands for it.
+    const fn stands(&self) -> bool {
+        matches!(self, Self::HoldS(_) | Self::HoldUntil(_))
+    }
+
     /// Keys of the deeds.
     pub const KEYS: [&str; 8] =
         ["say", "hold_s", "hold_until", "wait_for_leavers", "follow", "beside", "overtake", "lead_m"];
@@ -346,6 +354,7 @@ impl Form {
                 RobotMoment::Start => RobotWhen::Start,
                 RobotMoment::Blocked(s) => RobotWhen::Blocked(*s),
                 RobotMoment::HumanNear(m) => RobotWhen::HumanNear(*m),
+                RobotMoment::Near(name, m) => RobotWhen::Near(self.one(name)?, *m),
                 RobotMoment::HumanSays(gesture) => RobotWhen::HumanSays(*gesture),
                 RobotMoment::AtEncounter(name) => RobotWhen::AtEncounter(self.one(name)?),
                 RobotMoment::AfterSecs(s) => RobotWhen::AfterSecs(*s),
@@ -363,10 +372,17 @@ impl Form {
                 RobotDeed::LeadM(m) => RobotDo::Lead(*m),
             })
         };
-        let line = |step: &RobotStep| {
-            let when = step.when.as_ref().map_or(Some(RobotWhen::Start), when)?;
+        // Without a moment of its own, or with that of a stand before it, a line follows the one before it.
+        let line = |(place, step): (usize, &RobotStep)| {
+            let before = place.checked_sub(1).and_then(|before| steps.get(before));
+            let own = |before: &RobotStep| before.when == step.when && before.act.stands();
+            let when = if before.is_some_and(|before| step.when.is_none() || own(before)) {
+                RobotWhen::Did(u32::try_from(place).ok()?)
+            } else {
+                step.when.as_ref().map_or(Some(RobotWhen::Start), when)?
+            };
             Some(RobotRule { when, act: act(&step.act)? })
         };
-        steps.iter().filter_map(line).collect()
+        steps.iter().enumerate().filter_map(line).collect()
     }
 }

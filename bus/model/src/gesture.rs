@@ -30,6 +30,9 @@ pub enum Gesture {
 const NONE: &str = "NONE";
 
 impl Gesture {
+    /// Largest distance at which a gesture is noticed, m.
+    pub const SEEN_M: f64 = 12.0;
+
     /// Every gesture in order of its code.
     pub const ALL: [Self; 5] = [Self::Wait, Self::Proceed, Self::Acknowledged, Self::ExcuseMe, Self::FollowMe];
 

@@ -38,6 +38,8 @@ pub mod proposal;
 pub mod reading;
 pub mod request;
 pub mod rule;
+pub mod scenario;
+pub mod script;
 
 pub mod drive;
 pub mod driver;
@@ -91,6 +93,7 @@ pub use robot::{Kinematics, RobotModel};
 pub use role::Role;
 pub use rule::{Action, RobotRule, Rule, Trigger};
 pub use run::Run;
+pub use scenario::Scenario;
 pub use signature::Signature;
 pub use standing::{JobState, ScenarioEnd};
 pub use statement::Statement;

@@ -267,10 +267,11 @@ fn scripted(when: &RobotWhen, act: &RobotDo) -> (String, Option<f64>) {
     let (word, time_s) = match when {
         RobotWhen::Start => ("start".to_owned(), None),
         RobotWhen::Blocked(s) => ("blocked".to_owned(), Some(*s)),
-        RobotWhen::HumanNear(m) => ("near".to_owned(), Some(-m / ROBOT_MPS)),
+        RobotWhen::HumanNear(m) | RobotWhen::Near(_, m) => ("near".to_owned(), Some(-m / ROBOT_MPS)),
         RobotWhen::HumanSays(gesture) => (format!("hears {gesture}"), None),
         RobotWhen::AtEncounter(_) => ("meets".to_owned(), None),
         RobotWhen::AfterSecs(s) => ("after".to_owned(), Some(*s)),
+        RobotWhen::Did(_) => ("then".to_owned(), None),
     };
     let done = match act {
         RobotDo::Say(gesture) => format!("says {gesture}"),

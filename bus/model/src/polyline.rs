@@ -85,32 +85,34 @@ impl Polyline {
         self.project_within(point, 0.0, self.length_m())
     }
 
-    /// Length at which a way turns that leads back from there along itself to where it began, m; nothing of any other way.
-    #[must_use]
-    pub fn turn_m(&self) -> Option<f64> {
-        let half = 0.5 * self.length_m();
-        let closed = (self.points.first()? - self.end()?).norm() < Self::CLOSED_M && half > 4.0 * Self::TURN_M;
-        // Hardly any way is closed: the rest is asked of those alone.
-        let folds = || self.direction(half - Self::TURN_M).dot(&self.direction(half + Self::TURN_M)) < -0.9;
-        (closed && folds()).then_some(half)
+    /// Lengths between `from` and `to` at which the way folds back along itself, m, in their order.
+    pub fn folds_m(&self, from: f64, to: f64) -> impl Iterator<Item = f64> {
+        let first = self.along.partition_point(|mark| *mark < from);
+        let marks = self.along.iter().skip(first).copied().take_while(move |mark| *mark <= to);
+        let inner = marks.filter(|mark| *mark > 0.0 && *mark < self.length_m());
+        let turned = |mark: f64| self.direction(mark - Self::TURN_M).dot(&self.direction(mark + Self::TURN_M));
+        inner.filter(move |mark| turned(*mark) < Self::FOLDED)
     }
 
-    /// How far somebody has got along a way who was at `s` before, and how far they are off it, m: looked for between `back` behind
-    /// and `ahead` of it. Before the turn of a way there and back what lies behind the turn is not taken for it.
+    /// Progress along a way from `s`, and the distance off it, m: looked for between `back` behind and `ahead` of it. Before a fold of the
+    /// way what lies behind the fold is not taken for it.
     #[must_use]
     pub fn progress(&self, point: &Point, s: f64, (back, ahead): (f64, f64)) -> (f64, f64) {
-        let (from, to) = (s - back, s + ahead);
-        match self.turn_m() {
-            None => self.project_within(point, from, to),
-            Some(turn) if s < turn - Self::TURN_M => self.project_within(point, from, to.min(turn)),
-            Some(turn) => self.project_within(point, from.max(turn - Self::TURN_M), to),
+        let (mut from, mut to) = (s - back, s + ahead);
+        for fold in self.folds_m(from, to + Self::TURN_M) {
+            if s < fold - Self::TURN_M {
+                to = to.min(fold);
+            } else {
+                from = from.max(fold - Self::TURN_M);
+            }
         }
+        self.project_within(point, from, to)
     }
 
-    /// A way ends where it began within this distance, m.
-    const CLOSED_M: f64 = 0.5;
-    /// So far before and after its turn the directions are compared, and so near to it both sides of it count, m.
+    /// Distance before and after a fold at which the directions are compared, and within which both sides of it count, m.
     const TURN_M: f64 = 0.4;
+    /// Cosine of the angle between the two directions below which it is a fold.
+    const FOLDED: f64 = -0.9;
 
     /// As [`Polyline::project`], but only between the lengths `from` and `to`: a way that comes back to
     /// itself is not cut short.
@@ -190,13 +192,26 @@ mod tests {
     fn a_way_there_and_back_is_walked_once_in_each_direction() {
         let points = [(0., 0.), (6., 0.), (6., 3.), (6., 0.), (0., 0.)].map(|(x, y)| Point::new(x, y));
         let way = Polyline::new(&points);
-        assert_eq!((way.turn_m(), corner().turn_m()), (Some(9.0), None));
+        let folds = |way: &Polyline| way.folds_m(0.0, way.length_m()).collect::<Vec<_>>();
+        assert_eq!((folds(&way), folds(&corner())), (vec![9.0], vec![]));
         // One meter before the turn, and one meter behind it, the place is the same.
         let at = Point::new(6., 2.);
         assert!((way.progress(&at, 7.5, (0.3, 3.0)).0 - 8.0).abs() < 1e-12);
         assert!((way.progress(&at, 9.2, (0.3, 3.0)).0 - 10.0).abs() < 1e-12);
         let start = Point::new(0.1, 0.);
         assert!((way.progress(&start, 0.0, (0.3, 30.0)).0 - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_way_with_two_dead_ends_folds_twice_and_no_fold_is_skipped() {
+        let points = [(0., 0.), (2., 0.), (2., 1.), (2., 0.), (4., 0.), (4., 1.), (4., 0.), (6., 0.)];
+        let way = Polyline::new(&points.map(|(x, y)| Point::new(x, y)));
+        assert_eq!(way.folds_m(0.0, way.length_m()).collect::<Vec<_>>(), [3.0, 7.0]);
+        // The mouth of the first dead end is level with 2 m and with 4 m: who has not been in it is at the former.
+        let mouth = Point::new(2., 0.1);
+        assert!(way.progress(&mouth, 1.9, (0.3, 3.0)).0 <= 2.11);
+        assert!((way.progress(&mouth, 3.7, (0.3, 3.0)).0 - 3.9).abs() < 1e-9);
+        assert!(way.progress(&Point::new(4., 0.9), 6.8, (0.3, 3.0)).0 <= 7.11);
     }
 
     #[test]

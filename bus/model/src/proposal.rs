@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::clause::Clause;
+use crate::clause::{Clause, Predicate};
 use crate::gesture::Gesture;
 use crate::ids::{GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
@@ -311,7 +311,7 @@ pub struct Proposal {
     /// Assumptions, in sentences.
     #[serde(default)]
     pub notes: Vec<String>,
-    /// Who wrote it: `offline/1`, `openai:gpt-…`, `pinned`.
+    /// The author: `offline/1`, `openai:gpt-…`, `pinned`.
     pub author: crate::Signature,
 }
 
@@ -323,6 +323,18 @@ impl Proposal {
     #[must_use]
     pub fn card(&self) -> Option<&str> {
         Some(self.pattern.as_str()).filter(|pattern| *pattern != Self::FREE)
+    }
+
+    /// The nodes at which a human meets the robot elsewhere than at [`Proposal::place`]; none where they meet it there.
+    #[must_use]
+    pub fn own_place(&self, human: HumanId) -> Option<&[NodeId]> {
+        self.expected_events.iter().find_map(|clause| {
+            if let Predicate::EncounterAt { nodes, human: Some(own), .. } = &clause.predicate {
+                Some(nodes.as_slice()).filter(|_| *own == human)
+            } else {
+                None
+            }
+        })
     }
 
     /// The human of this id.

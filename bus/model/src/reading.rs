@@ -1,5 +1,7 @@
 //! The reading: what was understood of a request, and what was not.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +11,7 @@ use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Relation, Side, WayPart};
 use crate::rule::{RobotRule, Rule};
+use crate::scenario::Scenario;
 use crate::statement::{Statement, TextKey};
 
 /// One thing that the text asks for.
@@ -77,6 +80,17 @@ pub enum FactKind {
         human: HumanId,
         /// The place in the words of the request.
         name: String,
+        /// The nodes that the map calls so.
+        nodes: Vec<NodeId>,
+    },
+    /// A human meets the robot at a place of their own.
+    MeetsAt {
+        /// The human.
+        human: HumanId,
+        /// The place in the words of the request.
+        name: String,
+        /// Its class.
+        class: PlaceClass,
         /// The nodes that the map calls so.
         nodes: Vec<NodeId>,
     },
@@ -219,6 +233,12 @@ pub struct Reading {
     /// What became of every clause of the texts, in their order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub statements: Vec<Statement>,
+    /// The scenario as its author states it, where the author reads the texts: what is said above follows from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenario: Option<Scenario>,
+    /// What the author of `scenario` said of each sentence, a line each, by the sentence's number.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub account: BTreeMap<String, Vec<String>>,
     /// Assumptions that were made, in sentences.
     pub notes: Vec<String>,
     /// Wishes that cannot be read, placed or simulated.

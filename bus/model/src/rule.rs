@@ -86,8 +86,14 @@ pub enum Action {
 }
 
 impl Action {
-    /// Whoever comes up to the robot as near as a distance is at most so much farther away, m.
+    /// Largest distance beyond the asked one at which a person has come up to the robot, m.
     pub const CLOSE_M: f64 = 0.15;
+
+    /// Whether it is done standing: as it is, or turned to the robot or to another human.
+    #[must_use]
+    pub const fn stands(&self) -> bool {
+        matches!(self, Self::StandStill | Self::LookAtRobot | Self::LookAt(_))
+    }
 
     /// Whether it is one of those that only steps of a form have.
     #[must_use]
@@ -381,12 +387,16 @@ pub enum RobotWhen {
     Blocked(f64),
     /// A human is within this distance, m.
     HumanNear(f64),
+    /// This human is within this distance, m.
+    Near(HumanId, f64),
     /// A human makes this gesture.
     HumanSays(Gesture),
-    /// It reaches the encounter node of this human; of several, the first.
+    /// It reaches the encounter node of this human, or them while they are there; of several encounters, the first.
     AtEncounter(HumanId),
     /// Time since the start, s.
     AfterSecs(f64),
+    /// The line of this number, from 1, of the script is over.
+    Did(u32),
 }
 
 impl RobotWhen {
@@ -397,10 +407,24 @@ impl RobotWhen {
             Self::Start => "from the start".to_owned(),
             Self::Blocked(s) => format!("when it was blocked for {s} s"),
             Self::HumanNear(m) => format!("when a human is within {m} m"),
+            Self::Near(human, m) => format!("when {human} is within {m} m"),
             Self::HumanSays(gesture) => format!("when a human says {gesture}"),
             Self::AtEncounter(human) => format!("at the encounter with {human}"),
             Self::AfterSecs(s) => format!("after {s} s"),
+            Self::Did(number) => format!("once line {number} of its script is over"),
         }
+    }
+
+    /// The robot is at an encounter within this distance of its node, m, or of the human while they are at it, m from the node.
+    const AT_NODE_M: f64 = 1.0;
+    const AT_HUMAN_M: f64 = 1.8;
+    const HUMAN_AT_NODE_M: f64 = 1.5;
+
+    /// Margin by which the robot is at an encounter, m; below 0 it is not. Distances: robot to node, robot to human, human to node, m.
+    #[must_use]
+    pub const fn at_encounter_m(robot_to_node_m: f64, robot_to_human_m: f64, human_to_node_m: f64) -> f64 {
+        let beside = (Self::AT_HUMAN_M - robot_to_human_m).min(Self::HUMAN_AT_NODE_M - human_to_node_m);
+        (Self::AT_NODE_M - robot_to_node_m).max(beside)
     }
 
     /// Within this distance ahead of the robot a human blocks it, m: it stops more than a meter before whoever stands in its way.
@@ -438,8 +462,21 @@ pub enum RobotDo {
 }
 
 impl RobotDo {
+    /// Duration of a sign, s.
+    pub const SAYS_S: f64 = 2.0;
     /// Longest time for which the robot waits for something, s.
     pub const HOLD_MOST_S: f64 = 60.0;
+
+    /// Time after which it is over at the latest, s. With 0 it goes on beside what comes next.
+    #[must_use]
+    pub const fn longest_s(&self) -> f64 {
+        match self {
+            Self::Say(_) => Self::SAYS_S,
+            Self::Hold(secs) => *secs,
+            Self::HoldUntil(_) => Self::HOLD_MOST_S,
+            Self::WaitForLeavers | Self::Follow(_) | Self::Abreast(_) | Self::Overtake(_) | Self::Lead(_) => 0.0,
+        }
+    }
 }
 
 /// One line of the robot script.

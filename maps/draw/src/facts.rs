@@ -12,6 +12,7 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::Reacts { human, rule } => format!("{human} {}", rule_words(rule)),
         FactKind::Pace { human, mps } => format!("{human} walks at {mps} m/s"),
         FactKind::Goal { human, name, .. } => format!("{human} goes to {name}"),
+        FactKind::MeetsAt { human, name, .. } => format!("{human} meets the robot at {name}"),
         FactKind::MeetsTimes { human, times, place } => {
             let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
             format!("{human} meets the robot {times} times{place}")

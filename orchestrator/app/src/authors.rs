@@ -7,11 +7,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::time::Duration;
 
+use socrates_author::here::{self, LocalServer};
 use socrates_author::{AskError, Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
 use socrates_model::AuthorSpec;
 use socrates_model::job::{BEHAVIORS_BY, BY_PROPOSAL};
+use socrates_model::request::ServerKind;
 use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
@@ -103,6 +105,50 @@ pub(crate) fn key_found(config: &Config) -> Result<bool, Diagnostic> {
     Ok(key(config, &part(Dialect::OpenAi))?.is_some())
 }
 
+/// The author that `auto` means, and why: a model with a key, else one of a server on this machine, else rules.
+pub(crate) fn auto(config: &Config) -> Result<(AuthorSpec, String), Diagnostic> {
+    let model = config.text("author.model");
+    let key_found = key_found(config)?;
+    if key_found && !model.is_empty() {
+        let author = AuthorSpec::Server(ServerKind::OpenAi, model);
+        let note = author.to_string();
+        return Ok((author, note));
+    }
+    let why = if key_found { "a key was found, but no model" } else { "no key found" };
+    let servers = servers_here(config)?;
+    if let Some((kind, model)) = servers.iter().find_map(|server| Some((server.kind, server.model.as_ref().ok()?))) {
+        let author = AuthorSpec::Server(kind, model.clone());
+        let note = format!("{author} (found on this machine; {why}: `--author offline` for rules)");
+        return Ok((author, note));
+    }
+    let none = if servers.is_empty() { "" } else { ", no server on this machine" };
+    Ok((AuthorSpec::Offline, format!("offline, rules ({why}{none}: `socrates config author` to change)")))
+}
+
+/// The same author, where recordings have an author behind them that is not `auto`.
+pub(crate) fn settled(author: AuthorSpec, config: &Config) -> Result<AuthorSpec, Diagnostic> {
+    let behind = |inner: AuthorSpec| settled(inner, config).map(Box::new);
+    Ok(match author {
+        AuthorSpec::Auto => auto(config)?.0,
+        AuthorSpec::Record(folder, inner) => AuthorSpec::Record(folder, behind(*inner)?),
+        AuthorSpec::Replay(folder, inner) => AuthorSpec::Replay(folder, behind(*inner)?),
+        AuthorSpec::Offline | AuthorSpec::Server(..) | AuthorSpec::Cassette(_) => author,
+    })
+}
+
+/// The servers that were looked for on this machine, once for all requests; empty where the configuration looks for none.
+pub(crate) fn servers_here(config: &Config) -> Result<&[LocalServer], Diagnostic> {
+    let Some(kept) = config.servers() else { return Ok(&[]) };
+    let keys = keys(config)?;
+    let look = || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().ok()?;
+        Some(runtime.block_on(here::look(&keys, here::LIMIT)))
+    };
+    // A thread of its own: the caller may be one that must not wait for a second runtime.
+    let found = || std::thread::scope(|scope| scope.spawn(look).join()).ok().flatten().unwrap_or_default();
+    Ok(kept.get_or_init(found))
+}
+
 /// The style of questions, as settings of jobs; empty for the default.
 pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Diagnostic> {
     let words = ["mode", "paths", "behaviors", "image", "feedback"]
@@ -129,28 +175,14 @@ pub(crate) fn behaviors_by(author: &AuthorSpec, style: &BTreeMap<String, String>
     if compiled { BTreeMap::from([(BEHAVIORS_BY.to_owned(), BY_PROPOSAL.to_owned())]) } else { BTreeMap::new() }
 }
 
-/// Whether the author reads the texts of requests itself; rules have the grammar.
-pub(crate) fn reads(config: &Config, author: &AuthorSpec) -> Result<bool, Diagnostic> {
-    let word = config.text("author.reading");
-    match word.as_str() {
-        "model" => Ok(author.is_model()),
-        "grammar" => Ok(false),
-        _ => {
-            let what = format!("`author.reading`: `{word}` is unknown; allowed: model, grammar");
-            Err(Diagnostic::input(what, "`socrates config author` prints the manual"))
-        }
-    }
-}
-
 /// The writer of paths, as a setting of jobs; empty where the author writes them.
 pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Diagnostic> {
     let word = config.text("author.paths_by");
     match word.as_str() {
-        "model" => Ok(BTreeMap::new()),
+        "solver" => Ok(BTreeMap::new()),
         // Rules have the solver anyway, and their results stay the same results.
-        "solver" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
-        "model_alone" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
-        "solver" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
+        "model" | "model_alone" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
+        "model" | "model_alone" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
         _ => {
             let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, model_alone, solver");
             Err(Diagnostic::input(what, "`socrates config author` prints the manual"))
@@ -238,6 +270,7 @@ fn word<T: std::str::FromStr<Err: std::fmt::Display>>(key: &str, text: &str, mor
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::Program;
 
     fn config(flags: &[&str]) -> Config {
         let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
@@ -254,6 +287,45 @@ mod tests {
         let keys = keys(&config).unwrap();
         assert!(!format!("{keys:?} {:?}", config.lines(None)).contains("sk-of-the-file"));
         assert!(keys.servers[&Dialect::OpenAi].key.is_some() && keys.servers[&Dialect::Ollama].key.is_none());
+    }
+
+    #[test]
+    fn auto_is_a_key_then_a_server_on_this_machine_then_rules() {
+        let servers = ["ollama", "llamacpp", "vllm", "lmstudio"];
+        let closed = || std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        let urls: Vec<String> = servers.map(|kind| format!("author.{kind}.url=http://{}/v1", closed())).into();
+        let flags = |more: &[&str]| {
+            let all: Vec<&str> = urls.iter().map(String::as_str).chain(more.iter().copied()).collect();
+            config(&all)
+        };
+        let program = || Program { file: None, build: String::new(), temp: "/tmp".into() };
+        let none = flags(&[]).of(program());
+        let (author, why) = auto(&none).unwrap();
+        assert_eq!(author, AuthorSpec::Offline);
+        assert!(why.contains("no key found, no server on this machine"), "{why}");
+        assert_eq!(servers_here(&none).unwrap().len(), servers.len());
+
+        let found = flags(&[]).of(program());
+        let model = |name: &str| Ok(name.to_owned());
+        let server = |kind, model| LocalServer { kind, url: String::new(), model };
+        let here = vec![server(ServerKind::Vllm, Err(String::new())), server(ServerKind::LmStudio, model("m:7b"))];
+        found.servers().unwrap().set(here).unwrap();
+        let (author, why) = auto(&found).unwrap();
+        assert_eq!(author.to_string(), "lmstudio:m:7b");
+        assert!(why.starts_with("lmstudio:m:7b (found on this machine; no key found"), "{why}");
+        let recorded = settled("record:tape=replay:old=auto".parse().unwrap(), &found).unwrap();
+        assert_eq!(recorded.to_string(), "record:tape=replay:old=lmstudio:m:7b");
+        // Workers of a cluster have other servers around them, and other addresses want another look.
+        assert_eq!(auto(&found.without_servers()).unwrap().0, AuthorSpec::Offline);
+        assert!(found.clone().with(&[]).unwrap().servers().unwrap().get().is_none());
+
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("key");
+        std::fs::write(&file, "sk-of-the-file").unwrap();
+        let key = format!("author.key_file={}", file.display());
+        let keyed = found.with(&[key, "author.model=m".to_owned()]).unwrap();
+        assert_eq!(auto(&keyed).unwrap().0.to_string(), "openai:m");
+        assert!(keyed.servers().unwrap().get().is_none(), "nothing is looked for where there is a key");
     }
 
     #[test]
@@ -298,7 +370,7 @@ mod tests {
         assert!(told(&["author.key_variable=", "author.key_file=/no/such/key"]).contains("/no/such/key"));
         assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
         let by = |word: &str| paths_by(&config(&[&format!("author.paths_by={word}")]), &AuthorSpec::Auto);
-        assert!(by("model").unwrap().is_empty() && by("solver").unwrap()["paths_by"] == "solver");
+        assert!(by("solver").unwrap().is_empty() && by("model").unwrap()["paths_by"] == "model");
         assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, model_alone, solver"));
         let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
         assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");

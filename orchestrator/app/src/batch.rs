@@ -15,7 +15,7 @@ use crate::bundle::{self, Bundle};
 use crate::coverage::Coverage;
 use crate::encounters;
 use crate::exit::Diagnostic;
-use crate::index::{self, Index, Scenario, Traits};
+use crate::index::{self, Index, IndexedScenario, Traits};
 use crate::keep::{Form, Keep};
 use crate::kept::{self, Kept, Lines};
 use crate::layout;
@@ -117,7 +117,7 @@ impl Card {
             reports,
             recording: bundle.runs.first().map(|(recording, _)| recording),
         });
-        let scenario = Scenario {
+        let scenario = IndexedScenario {
             id: id.as_str(),
             request: bundle.manifest.request_name(),
             location: &location.name,
@@ -289,7 +289,7 @@ pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) 
             Err(why) if !held.bundled => return Err(why),
             Err(why) => {
                 page.add_failed(name, &why.what, None);
-                let scenario = Scenario { id: name, request: "", location: "", path: name, traits: None };
+                let scenario = IndexedScenario { id: name, request: "", location: "", path: name, traits: None };
                 index.add_failed(scenario, &why.what, false);
                 left_out.push((name.clone(), why.what));
             }
@@ -313,7 +313,7 @@ pub(crate) fn write(talk: &Printer, root: &Path, cards: BTreeMap<String, Card>) 
         let earlier = row.repeats.as_ref().map(ScenarioId::as_str);
         page.add_failed(row.scenario.as_str(), why, earlier);
         let id = row.scenario.as_str();
-        let scenario = Scenario { id, request: &row.request, location: "", path: "", traits: None };
+        let scenario = IndexedScenario { id, request: &row.request, location: "", path: "", traits: None };
         index.add_failed(scenario, why, earlier.is_some());
     }
     let table = index.csv();

@@ -52,7 +52,7 @@ pub async fn submit(
     options: &RunOptions,
 ) -> Result<Code, Diagnostic> {
     elsewhere(options)?;
-    let (mut prepared, refused) = prepared_all(config, requests, options)?;
+    let (mut prepared, refused) = prepared_all(&config.without_servers(), requests, options)?;
     if !refused.is_empty() {
         Refused::told(talk, &refused, prepared.len())?;
     }

@@ -15,7 +15,7 @@ use serde_json::json;
 use socrates_model::PlannerName;
 use socrates_scoring::compare::{CompareFault, Comparison, Entry, compare as compared, enough, runs_csv, under_test};
 
-use self::found::{Found, Scenario};
+use self::found::{Found, FoundScenario};
 use self::page::Rows;
 use crate::config::Config;
 use crate::exit::{Code, Diagnostic};
@@ -110,7 +110,7 @@ fn write(
     found: &Found,
     planners: Vec<PlannerName>,
 ) -> Result<Code, Diagnostic> {
-    let entries: Vec<Entry<'_>> = found.scenarios.iter().flat_map(Scenario::entries).collect();
+    let entries: Vec<Entry<'_>> = found.scenarios.iter().flat_map(FoundScenario::entries).collect();
     let planners = if planners.is_empty() { under_test(&entries) } else { planners };
     let planners = tested(&planners, options.against.as_ref());
     let comparison = compared(&entries, &planners).map_err(|why| refused(&why))?;

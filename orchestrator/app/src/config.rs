@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use socrates_author::here::LocalServer;
 
 use crate::exit::{Code, Diagnostic};
 
@@ -30,6 +33,8 @@ pub struct Config {
     /// What children of this process are told, so that their values are the same.
     passed_on: Vec<String>,
     program: Program,
+    /// Servers of this machine, once they were looked for; none where they are not.
+    servers: Option<Arc<OnceLock<Vec<LocalServer>>>>,
 }
 
 impl Config {
@@ -69,7 +74,7 @@ impl Config {
         }
         let passed_on = file.iter().flat_map(|file| ["--config".to_owned(), file.display().to_string()]).collect();
         let program = Program { file: None, build: String::new(), temp: PathBuf::from("/tmp") };
-        Self { values, variables, passed_on, program }.with(flags)
+        Self { values, variables, passed_on, program, servers: None }.with(flags)
     }
 
     /// The same with these values, written `key=value`, over its own.
@@ -87,12 +92,24 @@ impl Config {
             values.insert(key.to_owned(), (value, "flag --set".to_owned()));
             self.passed_on.extend(["--set".to_owned(), flag.clone()]);
         }
+        // Addresses may have changed.
+        self.servers = self.servers.map(|_| Arc::default());
         Ok(self)
     }
 
-    /// The same for this program.
+    /// The same for this program, which a person started: it may look for servers of language models on this machine.
     pub fn of(self, program: Program) -> Self {
-        Self { program, ..self }
+        Self { program, servers: Some(Arc::default()), ..self }
+    }
+
+    /// The same without servers of this machine: for work on other machines, which reaches none of them, and for work by rules.
+    pub(crate) fn without_servers(&self) -> Self {
+        Self { servers: None, ..self.clone() }
+    }
+
+    /// Where servers of this machine are kept once they were looked for; none where they are not looked for.
+    pub(crate) fn servers(&self) -> Option<&OnceLock<Vec<LocalServer>>> {
+        self.servers.as_deref()
     }
 
     /// The running program.

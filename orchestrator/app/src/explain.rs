@@ -249,7 +249,7 @@ pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Diagnostic> {
     let listen = std::net::TcpListener::bind("127.0.0.1:0").is_ok();
     let shm_free = shm_free_mib();
     let here = tempfile_ok();
-    let checks: Vec<(&str, bool, bool, String)> = vec![
+    let mut checks: Vec<(&str, bool, bool, String)> = vec![
         ("loopback network", listen, true, "worker processes talk over 127.0.0.1".to_owned()),
         (
             "this folder is writable",
@@ -263,7 +263,12 @@ pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Diagnostic> {
             false,
             format!("/dev/shm has {} MiB free; without it runs stream over the network only", shm_free.unwrap_or(0)),
         ),
-        ("language model key", key_found, false, "without it the offline author writes the scenarios".to_owned()),
+        (
+            "language model key",
+            key_found,
+            false,
+            "without it `auto` takes a server on this machine, else the offline author".to_owned(),
+        ),
         ("ffmpeg", program("ffmpeg"), false, "only for MP4 and WebM videos; GIF and SVG need nothing".to_owned()),
         (
             "browser",
@@ -272,6 +277,11 @@ pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Diagnostic> {
             "only for `socrates open`".to_owned(),
         ),
     ];
+    for server in crate::authors::servers_here(config)? {
+        let (told, url) = (server.model.as_ref().map_or_else(String::clone, |model| format!("`{model}`")), &server.url);
+        let note = if url.is_empty() { told } else { format!("{url}: {told}") };
+        checks.push((server.kind.name(), server.model.is_ok(), false, note));
+    }
     let mut missing = Vec::new();
     for (name, ok, needed, note) in &checks {
         let mark = if *ok {
@@ -286,7 +296,7 @@ pub fn doctor(talk: &Printer, config: &Config) -> Result<(), Diagnostic> {
             missing.push((*name).to_owned());
         }
     }
-    talk.result(&json!({ "checks": checks.iter().map(|(name, ok, needed, _)| json!({"name": name, "ok": ok, "needed": needed})).collect::<Vec<_>>() }));
+    talk.result(&json!({ "checks": checks.iter().map(|(name, ok, needed, note)| json!({"name": name, "ok": ok, "needed": needed, "note": note})).collect::<Vec<_>>() }));
     if missing.is_empty() {
         Ok(())
     } else {

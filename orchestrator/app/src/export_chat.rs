@@ -91,9 +91,7 @@ fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Diagnostic> {
             exchanges.into_iter().map(|exchange| exchange.answered(&question)).collect();
         if reviewed {
             match stage {
-                Stage::Proposal => {
-                    edited(&mut answers, whole.proposal.clone(), |text| parse_proposal(text, &question).ok())
-                }
+                Stage::Proposal => edited(&mut answers, whole.proposal.clone(), |text| parse_proposal(text).ok()),
                 Stage::Paths => edited(&mut answers, whole.paths.clone(), |text| parse_paths(text, &question).ok()),
                 Stage::Behaviors => {
                     edited(&mut answers, whole.behaviors.clone(), |text| parse_behaviors(text, &question).ok());

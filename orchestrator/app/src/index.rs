@@ -25,7 +25,7 @@ pub(crate) const FAILED: &str = ScenarioEnd::Failed.name();
 
 /// What the runs of one scenario have in common.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scenario<'a> {
+pub(crate) struct IndexedScenario<'a> {
     /// Its id.
     pub(crate) id: &'a str,
     /// Name of its request.
@@ -60,7 +60,7 @@ pub(crate) struct Rows(Vec<Vec<String>>);
 
 impl Rows {
     /// A row per run, those without a result last.
-    pub(crate) fn of(scenario: Scenario<'_>, reports: &[Report], failed: &[FailedRun]) -> Self {
+    pub(crate) fn of(scenario: IndexedScenario<'_>, reports: &[Report], failed: &[FailedRun]) -> Self {
         let rows = reports.iter().map(|report| {
             let mut row = row(
                 scenario,
@@ -105,7 +105,7 @@ impl Index {
     }
 
     /// Adds a scenario without a run, and why there is none.
-    pub(crate) fn add_failed(&mut self, scenario: Scenario<'_>, why: &str, repeats: bool) {
+    pub(crate) fn add_failed(&mut self, scenario: IndexedScenario<'_>, why: &str, repeats: bool) {
         let mut row = row(scenario, ["", "", FAILED, why]);
         row.extend(KEY_FIGURES.iter().map(|_| String::new()));
         row.extend(covered(scenario, None));
@@ -129,8 +129,8 @@ fn head() -> impl Iterator<Item = &'static str> {
 }
 
 /// The last cells of a row, in the order of [`COVERED`].
-fn covered(scenario: Scenario<'_>, density: Option<f64>) -> [String; 7] {
-    let Scenario { id, traits, .. } = scenario;
+fn covered(scenario: IndexedScenario<'_>, density: Option<f64>) -> [String; 7] {
+    let IndexedScenario { id, traits, .. } = scenario;
     let told = traits.cloned().unwrap_or_default();
     let people = traits.map_or_else(String::new, |traits| traits.people.to_string());
     let density = density.map_or_else(String::new, |density| density.to_string());
@@ -143,7 +143,7 @@ fn kind(repeats: bool) -> String {
 }
 
 /// The first cells of a row, in the order of [`COLUMNS`]; its kind is said later.
-fn row(scenario: Scenario<'_>, [planner, seed, verdict, reason]: [&str; 4]) -> Vec<String> {
+fn row(scenario: IndexedScenario<'_>, [planner, seed, verdict, reason]: [&str; 4]) -> Vec<String> {
     [scenario.request, scenario.location, planner, seed, verdict, &one_line(reason), "", scenario.path]
         .map(str::to_owned)
         .into()
@@ -157,7 +157,7 @@ mod tests {
     fn a_scenario_without_a_run_has_a_row_of_as_many_cells_as_the_head() {
         let mut index = Index::default();
         let scenario =
-            Scenario { id: "hall-1", request: "hall", location: "office, west", path: "hall-1", traits: None };
+            IndexedScenario { id: "hall-1", request: "hall", location: "office, west", path: "hall-1", traits: None };
         index.add_failed(scenario, "no author\n  T-NET \"gone\"", false);
         let text = index.csv();
         let table = socrates_stream::csv::Table::read(&text).unwrap();

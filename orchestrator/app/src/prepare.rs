@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use socrates_export::socrates_json::Imported;
-use socrates_model::request::ServerKind;
 use socrates_model::{
     AuthorSpec, Breadth, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlannerName, Proposal, Reading, Request,
     Role, ScenarioId, Seeds,
@@ -169,8 +168,7 @@ pub fn prepare_text(
     }
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
     let pinned = request.proposal.as_ref().map(|file| folder.join(file));
-    let by_author = crate::authors::reads(config, &author)?;
-    let reading = read(&request, &location, by_author, pinned.as_deref());
+    let reading = read(&request, &location, author.is_model(), pinned.as_deref());
     check_reading(&reading, &request, &location, shown)?;
     check_people(&request, &reading, &pins, shown)?;
     // What a language model would read out of the task is not known beforehand.
@@ -461,23 +459,15 @@ fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(AuthorSpec, Stri
         })
     };
     match if *wish == AuthorSpec::Auto { configured()? } else { wish.clone() } {
-        AuthorSpec::Auto => {}
-        AuthorSpec::Offline => return Ok((AuthorSpec::Offline, "offline, rules".to_owned())),
+        AuthorSpec::Auto => crate::authors::auto(config),
+        AuthorSpec::Offline => Ok((AuthorSpec::Offline, "offline, rules".to_owned())),
         named
         @ (AuthorSpec::Server(..) | AuthorSpec::Cassette(_) | AuthorSpec::Record(..) | AuthorSpec::Replay(..)) => {
+            let named = crate::authors::settled(named, config)?;
             let note = named.to_string();
-            return Ok((named, note));
+            Ok((named, note))
         }
     }
-    let model = config.text("author.model");
-    let key_found = crate::authors::key_found(config)?;
-    if key_found && !model.is_empty() {
-        let author = AuthorSpec::Server(ServerKind::OpenAi, model);
-        let note = author.to_string();
-        return Ok((author, note));
-    }
-    let why = if key_found { "a key was found, but no model" } else { "no key found" };
-    Ok((AuthorSpec::Offline, format!("offline, rules ({why}: `socrates config author` to change)")))
 }
 
 /// A word that is safe as folder and scenario id.

@@ -139,7 +139,8 @@ async fn scenes(options: &ServeOptions, config: &Config) -> Result<Vec<Scene>, D
             continue;
         }
         for file in request_files(std::slice::from_ref(what))? {
-            let prepared = prepare(&file, None, config)?;
+            // Rules make it below.
+            let prepared = prepare(&file, None, &config.without_servers())?;
             let made = in_process::author(&prepared.request, &prepared.reading, &prepared.location, options.seed);
             let made = made.await.map_err(|faults| {
                 let what = format!("`{}` cannot be made", file.display());

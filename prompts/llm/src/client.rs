@@ -104,12 +104,10 @@ impl ChatClient {
         if base.password().is_some() || !base.username().is_empty() || base.query().is_some() {
             return Err(setup("an address holds no key, name or query; the key has its own place".to_owned()));
         }
-        let host = base.host_str().unwrap_or_default();
-        let here = matches!(host, "localhost" | "127.0.0.1" | "[::1]");
-        if base.scheme() != "https" && !(base.scheme() == "http" && (here || config.plain_http)) {
+        if base.scheme() != "https" && !(base.scheme() == "http" && (is_here(&base) || config.plain_http)) {
             return Err(setup(format!("`{}` is neither https nor on this machine", config.base_url)));
         }
-        if config.model.is_empty() || config.model.chars().any(|c| c.is_whitespace() || "?#%".contains(c)) {
+        if !is_model_name(&config.model) {
             return Err(setup(format!("`{}` is no name of a model", config.model)));
         }
         // Somebody else of the process may have chosen a provider first; then that one serves.
@@ -125,6 +123,18 @@ impl ChatClient {
         }
         let http = builder.build().map_err(|error| setup(error.without_url().to_string()))?;
         Ok(Self { http, base, config })
+    }
+
+    /// Whether the address is one of this machine alone.
+    #[must_use]
+    pub fn is_here(&self) -> bool {
+        is_here(&self.base)
+    }
+
+    /// Base address.
+    #[must_use]
+    pub fn address(&self) -> &str {
+        &self.config.base_url
     }
 
     /// Model that is asked.
@@ -406,6 +416,16 @@ fn objection(error: &ChatError, local: bool) -> Option<Objection> {
         | ChatError::Unreadable { .. }
         | ChatError::Setup { .. } => None,
     }
+}
+
+/// Whether an address is one of this machine alone.
+fn is_here(base: &Url) -> bool {
+    matches!(base.host_str(), Some("localhost" | "127.0.0.1" | "[::1]"))
+}
+
+/// Whether a model of this name can be asked: names stand in addresses and on one line.
+pub(crate) fn is_model_name(name: &str) -> bool {
+    !name.is_empty() && !name.chars().any(|c| c.is_whitespace() || c.is_control() || "?#%".contains(c))
 }
 
 fn without_pictures(request: &ChatRequest) -> ChatRequest {

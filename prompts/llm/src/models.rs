@@ -1,10 +1,10 @@
-//! Whether a server has a model, asked before anything is made with it: a question without tokens.
+//! Which models a server has, asked before anything is made with it: a question without tokens.
 
 use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::client::ChatClient;
+use crate::client::{ChatClient, is_model_name};
 use crate::dialect::{Dialect, Wire};
 use crate::error::ChatError;
 use crate::wire;
@@ -21,6 +21,31 @@ pub enum Has {
     No(Vec<String>),
     /// It does not say, or what it says need not hold.
     Unsaid,
+}
+
+/// The models that each server lists within a time for all of them; empty for one that answers late or with anything else. All
+/// are asked at once.
+pub async fn listed(clients: &[ChatClient], limit: Duration) -> Vec<Vec<String>> {
+    let until = tokio::time::Instant::now() + limit;
+    let ask = |client: ChatClient| async move {
+        match tokio::time::timeout_at(until, client.get("/models", limit)).await {
+            Ok(Ok((200, body))) => names(&body).filter(|name| is_model_name(name)).collect(),
+            Ok(Ok(_) | Err(_)) | Err(_) => Vec::new(),
+        }
+    };
+    let asked: Vec<_> = clients.iter().map(|client| tokio::spawn(ask(client.clone()))).collect();
+    let mut lists = Vec::new();
+    for list in asked {
+        lists.push(list.await.unwrap_or_default());
+    }
+    lists
+}
+
+/// The names in a list of models; none in anything else.
+fn names(body: &[u8]) -> impl Iterator<Item = String> {
+    let mut list: Value = serde_json::from_slice(body).unwrap_or_default();
+    let rows = list.get_mut("data").and_then(Value::as_array_mut).map(std::mem::take).unwrap_or_default();
+    rows.into_iter().filter_map(|row| Some(row.get("id")?.as_str()?.to_owned()))
 }
 
 impl ChatClient {
@@ -58,9 +83,7 @@ impl ChatClient {
 
     /// What a list of models says.
     fn listed(&self, body: &[u8]) -> Has {
-        let list: Value = serde_json::from_slice(body).unwrap_or_default();
-        let rows = list.get("data").and_then(Value::as_array).into_iter().flatten();
-        let names: Vec<String> = rows.filter_map(|row| Some(row.get("id")?.as_str()?.to_owned())).collect();
+        let names: Vec<String> = names(body).collect();
         let model = self.model();
         if names.iter().any(|name| name == model || name.strip_suffix(":latest") == Some(model)) {
             return Has::Yes;
@@ -107,6 +130,26 @@ mod tests {
         let (has, head) = asked(Dialect::Anthropic, "c-1", 404, r#"{"error":{"message":"model: c-1"}}"#).await;
         assert_eq!(has.unwrap(), Has::No(Vec::new()));
         assert!(head.starts_with("GET /v1/v1/models/c-1 ") && head.to_lowercase().contains("x-api-key"), "{head}");
+    }
+
+    #[tokio::test]
+    async fn lists_come_in_the_order_of_the_clients_and_anything_else_is_no_list() {
+        let body = r#"{"data":[{"id":"two words"},{"id":"b\u0007"},{"id":"good"},{"name":"none"}]}"#;
+        let replies = [(200, body), (500, body), (200, "<html>"), (200, r#"{"data":{"id":"x"}}"#), (302, body)];
+        let client =
+            |url: &str| ChatClient::new(ClientConfig::new(Dialect::Vllm, url, ApiKey::new(""), "any")).unwrap();
+        let gone = Served::gone().await;
+        let (mut servers, mut clients) = (Vec::new(), vec![client(&gone.url)]);
+        for (status, body) in replies {
+            let server = Served::once(status, &[], body).await;
+            clients.push(client(&server.url));
+            servers.push(server);
+        }
+        let none = Vec::<String>::new;
+        let found = listed(&clients, Duration::from_secs(60)).await;
+        assert_eq!(found, [none(), vec!["good".to_owned()], none(), none(), none(), none()]);
+        let silent = Served::silent().await;
+        assert_eq!(listed(&[client(&silent.url)], Duration::from_millis(1)).await, [none()]);
     }
 
     #[tokio::test]

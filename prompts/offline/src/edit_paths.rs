@@ -202,7 +202,7 @@ fn moved(desk: &mut Desk, wish: &Wish, paths: &Paths) {
     if class != desk.draft.proposal.place {
         desk.draft.proposal.place = class;
         for clause in &mut desk.draft.proposal.expected_events {
-            if let socrates_model::Predicate::EncounterAt { place: old, nodes } = &mut clause.predicate {
+            if let socrates_model::Predicate::EncounterAt { place: old, nodes, human: None } = &mut clause.predicate {
                 *old = class;
                 nodes.clear();
                 clause.text = format!("it happens at {}", place::an(class));

@@ -193,6 +193,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             | FactKind::Facing { .. }
             | FactKind::Pace { .. }
             | FactKind::Goal { .. }
+            | FactKind::MeetsAt { .. }
             | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
@@ -224,6 +225,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         }
         FactKind::Pace { human, mps } => proposal.human(*human).is_some_and(|human| human.speed_mps == Some(*mps)),
         FactKind::Goal { human, .. } => proposal.human(*human).is_some_and(|human| human.goal.is_some()),
+        FactKind::MeetsAt { human, .. } => proposal.human(*human).is_some(),
         FactKind::RobotAt { part, nodes, .. } => {
             let clause = Predicate::RobotWay { part: *part, nodes: nodes.clone() };
             proposal.expected_events.iter().any(|other| other.predicate == clause)

@@ -21,7 +21,7 @@ const MEETS_M: f64 = 2.5;
 /// Somebody has met the robot again once they were this near, m.
 const AGAIN_M: f64 = 3.0;
 /// People at a blind corner see each other from no farther, m.
-const CORNER_M: f64 = 5.0;
+const CORNER_M: f64 = 7.5;
 /// Largest difference of arrival where ways cross and no card says, s.
 const GAP_S: f64 = 4.0;
 
@@ -115,11 +115,10 @@ pub(crate) fn events(proposal: &Proposal, question: &Question, part: &Part<'_>, 
         }
         of_relation(&mut list, "", human, proposal, gap_s);
     }
-    let said =
-        |clause: &Clause| matches!(clause.predicate, Predicate::EncounterAt { place, .. } if place == proposal.place);
+    let said = |clause: &Clause| matches!(clause.predicate, Predicate::EncounterAt { place, human: None, .. } if place == proposal.place);
     if place::has(location, proposal.place) && !list.0.iter().any(said) {
         let text = format!("it happens at {}", place::an(proposal.place));
-        list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place, nodes: Vec::new() });
+        list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place, nodes: Vec::new(), human: None });
     }
     of_card(&mut list, part, proposal, location);
     one_behind_the_other(&mut list.0);
@@ -146,6 +145,7 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
         | FactKind::Facing { human: who, .. }
         | FactKind::Pace { human: who, .. }
         | FactKind::Goal { human: who, .. }
+        | FactKind::MeetsAt { human: who, .. }
         | FactKind::Relates { human: who, .. } = &fact.kind
         {
             *who == human.id
@@ -206,7 +206,8 @@ fn of_fact(
             list.setup(true, &fact.id, text, Predicate::MeetsAgain { human: *human, nth: *times, within_m: AGAIN_M });
             if let Some(class) = place {
                 let text = format!("they meet at {}", place::an(*class));
-                list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: Vec::new() });
+                let at = Predicate::EncounterAt { place: *class, nodes: Vec::new(), human: None };
+                list.setup(true, &fact.id, text, at);
             }
         }
         FactKind::Gestures { human, gesture } => {
@@ -223,7 +224,8 @@ fn of_fact(
         FactKind::RobotSays(gesture) => says(list, &fact.id, AgentId::Robot, *gesture),
         FactKind::Place(class) => {
             let text = format!("it happens at {}", place::an(*class));
-            list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: at(*class) });
+            let nodes = at(*class);
+            list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes, human: None });
         }
         FactKind::Before { first, then, at_door } => {
             let place = if *at_door { "through the door" } else { "there" };
@@ -249,6 +251,11 @@ fn of_fact(
         FactKind::Goal { human, name, nodes } => {
             let text = format!("{human} goes to {name}");
             list.setup(true, &fact.id, text, Predicate::GetsTo { human: *human, nodes: nodes.clone() });
+        }
+        FactKind::MeetsAt { human, name, class, nodes } => {
+            let text = format!("{human} meets the robot at {name}");
+            let at = Predicate::EncounterAt { place: *class, nodes: nodes.clone(), human: Some(*human) };
+            list.setup(true, &fact.id, text, at);
         }
         FactKind::RobotDoes(line) => {
             let text = format!("robot: {}", line.phrase());
@@ -396,7 +403,7 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
     let elsewhere = through || proposal.is_leaving_path(id);
     let meets = |list: &mut List, must: bool, within_m: f64| {
         let must = must && !elsewhere;
-        // Whoever reacts at a distance need not come nearer than that.
+        // A person who reacts at a distance need not come nearer than that.
         let early = human
             .rules
             .iter()
@@ -444,7 +451,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
         Relation::Behind => {
             let follows = does(&Action::FollowRobot);
             meets(list, !follows, 3.5);
-            if !follows && !human.rules.iter().any(|rule| rule.act == Action::RunAway) {
+            // A person who stops meanwhile, or flees, comes up from behind, no more.
+            let stops = |rule: &Rule| rule.act == Action::RunAway || rule.step.is_some() && rule.act.stands();
+            if !follows && !human.rules.iter().any(stops) {
                 list.setup(said, source, format!("{id} overtakes the robot"), Predicate::Overtakes { human: id });
             }
         }

@@ -17,7 +17,7 @@ use socrates_model::{
 
 use crate::manner::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
 use crate::story::{Before, Group, Person, ReadRule, Story, is_closed, stands};
-use crate::{named, place};
+use crate::{named, place, spot};
 
 /// What those do who stand one behind the other.
 const QUEUES: &str = "queues";
@@ -219,9 +219,9 @@ fn orders(request: &Request, story: &mut Story) {
     }
 }
 
-/// Where the people meet the robot: one place for all. A place that this map does not have is a fault.
+/// Where the people meet the robot: the first place that is stated; another one is a fact of its own. A place that this map lacks is a fault.
 fn places(request: &Request, location: &Location, story: &mut Story) {
-    let mut stated: Vec<(&PlaceWord, HumanId)> = Vec::new();
+    let mut stated: Option<&PlaceWord> = None;
     for person in request.form.people() {
         let human = person.human;
         if let Some(FacingWord::Name(name)) = &human.facing
@@ -245,17 +245,12 @@ fn places(request: &Request, location: &Location, story: &mut Story) {
                 if !story.problems.contains(&fault) {
                     story.problems.push(fault);
                 }
-            } else if key == "human.place" && !stated.iter().any(|(other, _)| *other == place) {
-                stated.push((place, person.id));
+            } else if key == "human.place" {
+                stated.get_or_insert(place);
             }
         }
     }
-    if let [(first, _), (other, id), ..] = stated[..] {
-        let message = format!("{id} is at `{other}`, others at `{first}`; people meet the robot at one place for all");
-        story.problems.push(Fault::new(FaultCode::PLimit, "human.place", message).about([other.to_string()]));
-    }
-    let first =
-        stated.first().and_then(|(place, _)| bound(place, location).map(|bound| (bound.class, place.to_string())));
+    let first = stated.and_then(|place| bound(place, location).map(|bound| (bound.class, place.to_string())));
     story.place = first.map(|(class, name)| (class, format!("place = \"{name}\"")));
 }
 
@@ -275,7 +270,7 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
     }
     let inside = waits_inside(request, location);
     let goal = goal.or_else(|| behind_the_door(request, location, inside.clone()));
-    // Whoever waits inside is met there, unless a place is stated.
+    // A person who waits inside is met there, unless a place is stated.
     if story.place.is_none() {
         story.place = goal.clone().filter(|goal| inside.as_ref() == Some(goal));
     }
@@ -298,18 +293,36 @@ pub(crate) fn facts(request: &Request, location: &Location) -> Vec<(String, Fact
         if let Some(mps) = pace.and_then(socrates_model::form::Pace::mps) {
             found.push((format!("human {name}: pace = {mps} m/s"), FactKind::Pace { human: id, mps }));
         }
+        if let Some((place, kind)) = meets_at(&request.form, human, id, location) {
+            found.push((format!("human {name}: place = \"{place}\""), kind));
+        }
         let goal = human.goal.as_ref().and_then(|goal| Some((goal, bound(goal, location)?)));
         if let Some((goal, place)) = goal {
             let kind = FactKind::Goal { human: id, name: goal.to_string(), nodes: place.all_nodes(location) };
             found.push((format!("human {name}: goal = \"{goal}\""), kind));
         }
     }
-    let lines = request.robot.does.iter().flat_map(|step| {
-        let rules = request.form.script(std::slice::from_ref(step));
-        rules.into_iter().map(|rule| (format!("robot.does: {}", bare(&step.act)), FactKind::RobotDoes(rule)))
-    });
-    found.extend(lines);
+    let lines = request.robot.does.iter().zip(request.form.script(&request.robot.does));
+    found.extend(lines.map(|(step, rule)| (format!("robot.does: {}", bare(&step.act)), FactKind::RobotDoes(rule))));
     found
+}
+
+/// The place of a person's meeting, where it is another than the first that is stated. A person who comes out of a room is met before its door.
+fn meets_at<'h>(
+    form: &Form,
+    human: &'h FormHuman,
+    id: HumanId,
+    location: &Location,
+) -> Option<(&'h PlaceWord, FactKind)> {
+    let first = form.humans.iter().find_map(|human| human.place.as_ref())?;
+    let place = human.place.as_ref().filter(|place| *place != first)?;
+    let own = bound(place, location)?;
+    let class = own.class;
+    let mut nodes = own.all_nodes(location);
+    if matches!(human.relation, Relation::Leaving | Relation::Staying) && is_closed(class) {
+        nodes.extend(spot::before_doors(location, &nodes));
+    }
+    Some((place, FactKind::MeetsAt { human: id, name: place.to_string(), class, nodes }))
 }
 
 /// Whether somebody walks their own way at some time, and not only after somebody else.
@@ -355,9 +368,12 @@ pub(crate) fn met_at(request: &Request, location: &Location, class: PlaceClass) 
     Some(bound.nodes)
 }
 
-/// The nodes where the robot's way begins or ends, where the form states it by name.
+/// The nodes where the robot's way begins or ends, where the form states it.
 pub(crate) fn robot_end(place: Option<&PlaceWord>, location: &Location) -> Option<Vec<NodeId>> {
-    place.and_then(|place| bound(place, location)).map(|bound| bound.nodes).filter(|nodes| !nodes.is_empty())
+    let bound = bound(place?, location)?;
+    // Any room or car of a class is as good as another, as the story has it.
+    let nodes = if is_closed(bound.class) { bound.nodes } else { bound.all_nodes(location) };
+    Some(nodes).filter(|nodes| !nodes.is_empty())
 }
 
 /// The rooms that people come out of, or stay in, by name.
@@ -373,6 +389,16 @@ pub(crate) fn rooms(request: &Request, location: &Location) -> BTreeMap<HumanId,
         .filter(|person| indoors(person.human))
         .filter_map(|person| Some((person.id, room(person.human)?)))
         .collect()
+}
+
+/// The places by name where people's ways end.
+pub(crate) fn ends(request: &Request, location: &Location) -> BTreeMap<HumanId, Vec<NodeId>> {
+    let people = request.form.people();
+    let end = |human: &FormHuman| {
+        let nodes = bound(human.goal.as_ref()?, location)?.all_nodes(location);
+        (!human.relation.stands()).then_some(nodes)
+    };
+    people.iter().filter_map(|person| Some((person.id, end(person.human)?))).collect()
 }
 
 /// What the text says otherwise than the form, in one note: the form is played.
@@ -439,11 +465,6 @@ mod tests {
             ("relation = \"static\"\nplace = \"moon\"", FaultCode::PPlace, "`moon` is no place of this map"),
             ("relation = \"behind\"\npace = \"slow\"", FaultCode::PLimit, "overtakes the robot, at 1.2 m/s or faster"),
             ("relation = \"ahead\"\npace = 1.0", FaultCode::PLimit, "catches up with somebody ahead at 0.75 m/s"),
-            (
-                "relation = \"static\"\nplace = \"corridor\"\n[[human]]\nrelation = \"static\"\nplace = \"room\"",
-                FaultCode::PLimit,
-                "at one place for all",
-            ),
         ] {
             let found = problems(&format!("[[human]]\n{more}\n"));
             assert!(found.iter().any(|(own, text)| *own == code && text.contains(words)), "{words}: {found:?}");

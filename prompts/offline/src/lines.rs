@@ -113,6 +113,7 @@ fn fact_text(kind: &FactKind, location: &Location, quote: &str) -> Option<String
         | FactKind::Gestures { .. }
         | FactKind::Pace { .. }
         | FactKind::Goal { .. }
+        | FactKind::MeetsAt { .. }
         | FactKind::RobotDoes(_)
         | FactKind::RobotTask(_)
         | FactKind::Asked { .. }

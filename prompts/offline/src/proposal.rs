@@ -27,7 +27,8 @@ const FREE: &str = "free";
 const ABOUT: &str = "People and the robot meet.";
 
 /// Answers a proposal question.
-pub(crate) fn propose(question: &Question) -> Proposal {
+#[must_use]
+pub fn propose(question: &Question) -> Proposal {
     let (request, reading, location) = (&question.request, &question.reading, &question.location);
     let mut draw =
         Draw::new(question.seed.wrapping_add(u64::try_from(question.feedback.len()).unwrap_or(0)), "proposal");
@@ -105,7 +106,7 @@ fn reachable(proposal: &mut Proposal, question: &Question) {
         return;
     }
     for clause in &mut proposal.expected_events {
-        if let Predicate::EncounterAt { place, nodes } = &mut clause.predicate
+        if let Predicate::EncounterAt { place, nodes, human: None } = &mut clause.predicate
             && *place == proposal.place
         {
             nodes.clear();
@@ -302,9 +303,10 @@ fn robot(
     }
     hear(&mut script, humans);
     chance::stops(&mut script, humans);
+    // The numbers of a form's lines keep them apart.
     let mut seen: Vec<RobotRule> = Vec::new();
     script.retain(|line| {
-        if seen.contains(line) {
+        if seen.len() >= stated.len() && seen.contains(line) {
             false
         } else {
             seen.push(line.clone());

@@ -10,7 +10,10 @@ use crate::name::NAME;
 use crate::{form, spot, task};
 
 /// Answers a paths question.
-pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Result<Paths, Miss> {
+///
+/// # Errors
+/// What the map lacks for the paths, and by how much.
+pub fn solve(question: &Question, proposal: &Proposal) -> Result<Paths, Miss> {
     socrates_solver::solve(&problem(question, proposal)).map(|solved| solved.paths)
 }
 
@@ -40,6 +43,7 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
         radius_m: question.request.robot.model.radius_m,
         via: via.or_else(|| task.via.map(|(class, _)| class)),
         rooms: if request.form.is_empty() { spot::rooms(question) } else { form::rooms(request, location) },
+        ends: form::ends(request, location),
         layout: layout(&proposal.pattern),
         told,
         draw: Draw::new(question.seed, purpose).bits(),

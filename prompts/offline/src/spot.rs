@@ -53,7 +53,7 @@ fn is_door(location: &Location, id: &NodeId) -> bool {
 }
 
 /// The nodes right outside the doors of these.
-fn before_doors(location: &Location, rooms: &[NodeId]) -> Vec<NodeId> {
+pub(crate) fn before_doors(location: &Location, rooms: &[NodeId]) -> Vec<NodeId> {
     let graph = &location.graph;
     let mut from: Vec<&NodeId> =
         rooms.iter().flat_map(|room| graph.neighbors(room)).filter(|id| is_door(location, id)).collect();

@@ -126,6 +126,7 @@ const fn is_act(kind: &FactKind) -> bool {
         | FactKind::Gestures { .. }
         | FactKind::GesturesTo { .. }
         | FactKind::Goal { .. }
+        | FactKind::MeetsAt { .. }
         | FactKind::RobotSays(_)
         | FactKind::RobotDoes(_) => true,
         FactKind::Humans(_)

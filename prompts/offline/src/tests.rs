@@ -80,7 +80,7 @@ pub(crate) fn proposed(request: &Request, location: &Location) -> Proposal {
 /// Proposal and paths as the stages would make them.
 pub(crate) fn answers(request: &Request, location: &Location, seed: u64) -> (Question, Proposal, Paths) {
     let mut ask = question(Stage::Proposal, request, location, seed);
-    let proposal = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask));
+    let proposal = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask)));
     ask.stage = Stage::Paths;
     ask.proposal = Some(proposal.clone());
     let paths = parsed(socrates_prompts::parse_paths(&Offline::answer(&ask), &ask));
@@ -452,10 +452,12 @@ fn requests_without_a_rough_scenario_use_many_patterns_and_every_place_that_fits
         let location = &locations[usize::try_from(seed).unwrap() % locations.len()];
         let context = contexts[usize::try_from(seed).unwrap() / 3 % contexts.len()];
         let asked = Request { social_context: context.to_owned(), ..request("Deliver mail", None) };
-        let proposal = parsed(socrates_prompts::parse_proposal(
-            &Offline::answer(&question(Stage::Proposal, &asked, location, seed)),
-            &question(Stage::Proposal, &asked, location, seed),
-        ));
+        let proposal = parsed(socrates_prompts::parse_proposal(&Offline::answer(&question(
+            Stage::Proposal,
+            &asked,
+            location,
+            seed,
+        ))));
         *patterns.entry(proposal.pattern).or_default() += 1;
         used.insert(proposal.place);
     }
@@ -591,7 +593,7 @@ fn a_task_with_people_is_a_pattern_about_it() {
     ] {
         for seed in 0..10 {
             let ask = question(Stage::Proposal, &request(task, None), &map("office"), seed);
-            let found = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask));
+            let found = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask)));
             assert!(patterns.contains(&found.pattern.as_str()), "{task}: {}", found.pattern);
         }
     }

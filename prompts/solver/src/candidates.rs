@@ -7,6 +7,7 @@ use crate::breadth::Limits;
 use crate::everybody::{Solution, everybody};
 use crate::fit::{SQUEEZED, hides, overtakes, squeezed, suits, tight, width_m};
 use crate::graph::{Net, Tree};
+use crate::over_all::over_all;
 use crate::people::boarding;
 use crate::robot_way::{Route, Wish, over, score};
 use crate::{Ends, Layout, inside, meant, spread};
@@ -51,6 +52,9 @@ fn enters(scene: &Scene<'_>) -> Option<Vec<usize>> {
 
 pub(crate) fn candidates(scene: &Scene<'_>, wish: &Wish) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
+    if !net.elsewhere.is_empty() {
+        return over_all(scene, wish, enters(scene).as_deref());
+    }
     if let Some(inside) = enters(scene) {
         return inside.iter().flat_map(|goal| into(scene, wish, *goal)).collect();
     }
@@ -237,12 +241,16 @@ fn into(scene: &Scene<'_>, wish: &Wish, goal: usize) -> Vec<Solution> {
         let past = by.iter().filter_map(move |door| boarding::way_past(net, (goal, *door), start));
         direct.into_iter().chain(past).collect::<Vec<_>>()
     };
+    // A room by name in which the robot starts is left first.
+    let named = |start: usize| net.called(start, false) > 0.0 && !inside::same_door(net, start, Some(goal));
     let mut found: Vec<Solution> = (0..net.len())
-        .filter(|start| !net.inside(*start) && tree.length_m(*start).is_finite())
+        .filter(|start| (!net.inside(*start) || named(*start)) && tree.length_m(*start).is_finite())
         .flat_map(ways)
         .filter_map(|mut nodes| {
             nodes.reverse();
-            let inside = nodes.iter().filter(|node| net.inside(**node)).count();
+            let left = nodes.first().copied().filter(|start| net.inside(*start));
+            let own = |node: usize| left.is_some_and(|start| inside::same_door(net, node, Some(start)));
+            let inside = nodes.iter().filter(|node| net.inside(**node) && !own(**node)).count();
             if inside != 1 {
                 return None;
             }
@@ -353,7 +361,7 @@ fn roomy(net: &Net<'_>, node: usize) -> f64 {
     if net.kind(node) == PlaceClass::OpenArea { 2.0 } else { 0.0 }
 }
 
-fn best(scene: &Scene<'_>, routes: &mut Vec<Route>) {
+pub(crate) fn best(scene: &Scene<'_>, routes: &mut Vec<Route>) {
     routes.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.nodes.cmp(&b.nodes)));
     routes.truncate(scene.limits.routes);
 }

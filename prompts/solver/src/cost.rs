@@ -24,6 +24,8 @@ pub(crate) struct Weights {
     pub(crate) longer: f64,
     /// A way past the class of place that the task names: it is part of the task.
     pub(crate) via: f64,
+    /// Each place of a meeting elsewhere that the way does not lead over: less than an end by name, more than a detour.
+    pub(crate) elsewhere: f64,
     /// An end at a place of the class that is asked for.
     pub(crate) end_class: f64,
     /// Per meter that a way is shorter or longer than is wished.
@@ -59,6 +61,7 @@ pub(crate) const WEIGHTS: Weights = Weights {
     detour: 30.0,
     longer: 10.0,
     via: 6.0,
+    elsewhere: 40.0,
     end_class: 4.0,
     length_per_m: 0.3,
     room_per_m: 2.0,

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::rule::{RobotDo, RobotWhen};
-use socrates_model::{Encounter, FORMAT, HumanId, HumanProposal, NodeId, Paths, Relation};
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::{Encounter, FORMAT, HumanId, HumanProposal, NodeId, Paths, Proposal, Relation};
 
 use crate::candidates::Scene;
 use crate::graph::Net;
@@ -11,7 +11,7 @@ use crate::people::{Taken, Way, boarding, led_past, way};
 use crate::robot_way::{LEAST_M, Route, times_shortest};
 use crate::{Problem, inside, meant, named_way, second_meeting, spread};
 
-/// Who the robot speaks to as it comes near starts at least so much farther away, m, and what it costs not to.
+/// Least distance beyond that of the robot's words at which their listener starts, m, and the cost of less.
 const SETS_OFF_M: f64 = 1.5;
 const EARLY: f64 = 8.0;
 
@@ -49,6 +49,15 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: &Route) -> Vec<Solution> {
     found
 }
 
+/// Distance at which the robot speaks to a person near, m; negative where it does not.
+fn says_m(proposal: &Proposal) -> f64 {
+    let near = proposal.robot.script.iter().filter(|line| matches!(line.act, RobotDo::Say(_)));
+    let at_m = |line: &RobotRule| {
+        if let RobotWhen::HumanNear(m) | RobotWhen::Near(_, m) = line.when { Some(m) } else { None }
+    };
+    near.filter_map(at_m).fold(-SETS_OFF_M, f64::max)
+}
+
 /// Everybody's way for one way of the robot; `from` has somebody come to the meeting from a node.
 fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Option<Solution> {
     let Scene { net, proposal, layout, crowded, limits } = *scene;
@@ -74,9 +83,7 @@ fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Opti
     let beside = |relation: Relation| matches!(relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
     let along = proposal.humans.iter().any(|human| !beside(human.relation));
     let mut cost = 0.0;
-    let near = proposal.robot.script.iter().filter(|line| matches!(line.act, RobotDo::Say(_)));
-    let near = near.filter_map(|line| if let RobotWhen::HumanNear(m) = line.when { Some(m) } else { None });
-    let says_m = near.fold(-SETS_OFF_M, f64::max);
+    let says_m = says_m(proposal);
     let twice = second_meeting::asked(proposal);
     let mut again: BTreeMap<HumanId, usize> = BTreeMap::new();
     for human in &proposal.humans {
@@ -95,10 +102,16 @@ fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Opti
         let own = match shared {
             Some(way) if mate.is_some() || human.relation == Relation::Ahead => way.clone(),
             Some(leader) => after(net, leader, &taken)?,
-            None => match spread.iter().find(|(id, _)| *id == human.id) {
-                Some((_, meet)) => way(human, &Route { meet: *meet, ..route.clone() }, &taken, along)?,
-                None => way(human, route, &taken, along)?,
-            },
+            None => {
+                let at = spread.iter().find(|(id, _)| *id == human.id).map_or(route.meet, |(_, meet)| *meet);
+                let own = net.elsewhere.get(&human.id);
+                taken.meant = own.map_or(&meant, Vec::as_slice);
+                let at = own.map_or_else(|| vec![at], |place| met_on(route, place, human));
+                let ways = at.into_iter().filter_map(|meet| way_at(human, route, meet, (&taken, along)));
+                let best = ways.min_by(|a, b| a.cost.total_cmp(&b.cost));
+                taken.meant = &meant;
+                best?
+            }
         };
         let own = match twice.iter().find(|(id, _)| *id == human.id) {
             // A member of a group goes the way of the one before it, its second meeting included.
@@ -140,6 +153,57 @@ fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Opti
     }
     let score = route.score - cost;
     Some(Solution { route: route.clone(), ways, again, strain: cost, score })
+}
+
+/// The way of a person whom the robot meets at a position on its own.
+fn way_at(human: &HumanProposal, route: &Route, meet: usize, (taken, along): (&Taken<'_>, bool)) -> Option<Way> {
+    let at = Route { meet, ..route.clone() };
+    let at = if human.relation.stands() { at } else { without_loops(&at) };
+    let way = way(human, &at, taken, along)?;
+    let more = if taken.net.elsewhere.is_empty() { 0.0 } else { aslant(taken.net, route, human, &way) };
+    Some(Way { cost: way.cost + more, ..way })
+}
+
+/// The way without what leads back to a node before the meeting, and after it: people who walk it do not go into dead ends beside it.
+fn without_loops(route: &Route) -> Route {
+    let erased = |nodes: &[usize]| {
+        let mut kept: Vec<usize> = Vec::new();
+        for node in nodes {
+            match kept.iter().position(|known| known == node) {
+                Some(at) => kept.truncate(at + 1),
+                None => kept.push(*node),
+            }
+        }
+        kept
+    };
+    let mut nodes = erased(route.nodes.get(..=route.meet).unwrap_or_default());
+    let meet = nodes.len().saturating_sub(1);
+    nodes.extend(erased(route.nodes.get(route.meet..).unwrap_or_default()).into_iter().skip(1));
+    Route { nodes, meet, ..*route }
+}
+
+/// Positions on the robot's way at which it can meet a person at a place of theirs; at its end it meets only those who stand.
+fn met_on(route: &Route, place: &[usize], human: &HumanProposal) -> Vec<usize> {
+    let Some(last) = route.nodes.len().checked_sub(1) else { return Vec::new() };
+    let between = |at: &usize| human.relation.stands() && *at > 0 || (1..last).contains(at);
+    let at = |at: &usize| route.nodes.get(*at).is_some_and(|node| place.contains(node));
+    (0..=last).filter(between).filter(at).collect()
+}
+
+/// Cosine of the angle between two ways above which the one does not cross the other, and the cost of such a way.
+const ALONG: f64 = 0.75;
+const NO_CROSSING: f64 = 20.0;
+
+/// Cost of a way that is to cross the robot's and comes to it along that, or turns into it where it goes straight on.
+fn aslant(net: &Net<'_>, route: &Route, human: &HumanProposal, way: &Way) -> f64 {
+    let beside = |nodes: &[usize]| {
+        let at = nodes.iter().position(|node| *node == way.meet)?;
+        Some((*nodes.get(at.checked_sub(1)?)?, *nodes.get(at + 1)?))
+    };
+    let (Some((before, after)), Some((entry, exit))) = (beside(&route.nodes), beside(&way.nodes)) else { return 0.0 };
+    let along = net.straight(before, way.meet, entry).abs() > ALONG;
+    let turns_in = [before, after].contains(&exit) && net.straight(before, way.meet, after) > ALONG;
+    if human.relation == Relation::Crossing && (along || turns_in) { NO_CROSSING } else { 0.0 }
 }
 
 /// The way of somebody who follows another human: the same, from the node before or after its start.

@@ -12,7 +12,7 @@ use socrates_model::{HumanId, Location, NodeId, PlaceClass, Point};
 use crate::cost::{FARTHEST, WEIGHTS};
 use crate::measure::SHORTEST_M;
 use crate::passable::{Closed, floor_m};
-use crate::{Problem, named_way, passable};
+use crate::{Problem, meant, named_way, passable};
 
 /// Half the width of floor that people get through, m: their radius of 0.28 m, and what keeps them off walls. In the simulation
 /// they come through 0.65 m and stay before 0.6 m.
@@ -36,8 +36,12 @@ pub(crate) struct Net<'a> {
     between_m: f64,
     /// The rooms that people come out of by name.
     rooms: BTreeMap<HumanId, Vec<usize>>,
+    /// The places by name where people's ways end.
+    ends: BTreeMap<HumanId, Vec<usize>>,
     /// Nodes by name of which the robot's way has to lead past one; empty where it has not.
     pub(crate) past: Vec<usize>,
+    /// The places where people meet the robot elsewhere than at the place of the proposal.
+    pub(crate) elsewhere: BTreeMap<HumanId, Vec<usize>>,
     /// Edges that nobody gets through.
     closed: Vec<Closed>,
     /// Shortest ways from nodes, nothing barred, as they were asked for.
@@ -64,9 +68,12 @@ impl<'a> Net<'a> {
         let (own, wide) = (of(problem.radius_m), of(problem.radius_m.max(PERSON_M)));
         let net = if wide.serves(&own, problem) { wide } else { own };
         let index = |ids: &Vec<NodeId>| ids.iter().filter_map(|id| net.index(id)).collect();
-        let rooms = problem.rooms.iter().map(|(human, ids)| (*human, index(ids))).collect();
+        let indexed =
+            |all: &BTreeMap<HumanId, Vec<NodeId>>| all.iter().map(|(human, ids)| (*human, index(ids))).collect();
+        let (rooms, ends) = (indexed(&problem.rooms), indexed(&problem.ends));
         let past = named_way::via(problem.proposal).iter().filter_map(|id| net.index(id)).collect();
-        Self { rooms, past, ..net }
+        let elsewhere = meant::elsewhere(&net, problem.proposal);
+        Self { rooms, ends, past, elsewhere, ..net }
     }
 
     /// Whether edges are closed here and not there, and the task can be done without them.
@@ -115,7 +122,9 @@ impl<'a> Net<'a> {
             goal_m: Vec::new(),
             between_m: f64::INFINITY,
             rooms: BTreeMap::new(),
+            ends: BTreeMap::new(),
             past: Vec::new(),
+            elsewhere: BTreeMap::new(),
             closed: Vec::new(),
             trees: RefCell::default(),
         }
@@ -230,6 +239,11 @@ impl<'a> Net<'a> {
             }
             Some(_) | None => all,
         }
+    }
+
+    /// The places by name where a person's way ends; empty where it is left open.
+    pub(crate) fn ends_of(&self, human: HumanId) -> &[usize] {
+        self.ends.get(&human).map_or(&[], Vec::as_slice)
     }
 
     /// How well a node suits as the end of a way that the robot's task names; 0 where it names none.

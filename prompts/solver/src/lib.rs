@@ -23,6 +23,7 @@ mod meant;
 pub mod measure;
 mod miss;
 mod named_way;
+mod over_all;
 mod passable;
 mod people;
 mod robot_way;
@@ -45,6 +46,7 @@ mod tests_doors;
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
+use socrates_model::proposal::WayPart;
 use socrates_model::{Breadth, HumanId, Location, NodeId, Paths, PlaceClass, Proposal, RobotModel, Signature};
 
 pub use meant::{met_at, of_proposal};
@@ -112,6 +114,8 @@ pub struct Problem<'a> {
     pub via: Option<PlaceClass>,
     /// Nodes of the rooms that people come out of by name.
     pub rooms: BTreeMap<HumanId, Vec<NodeId>>,
+    /// Nodes of the places by name where people's ways end.
+    pub ends: BTreeMap<HumanId, Vec<NodeId>>,
     /// What the pattern wants.
     pub layout: Layout,
     /// What was said of earlier answers.
@@ -125,17 +129,18 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// The problem of a proposal as it stands: nothing by name, nothing said before, the usual robot.
+    /// The problem of a proposal as it stands: ends by name as its clauses have them, nothing said before, the usual robot.
     #[must_use]
     pub fn of(proposal: &'a Proposal, location: &'a Location, author: Signature) -> Self {
         Self {
             proposal,
             location,
-            starts: Vec::new(),
-            goals: Vec::new(),
+            starts: named_way::ends(proposal, WayPart::Start),
+            goals: named_way::ends(proposal, WayPart::Goal),
             radius_m: RobotModel::default().radius_m,
             via: None,
             rooms: BTreeMap::new(),
+            ends: BTreeMap::new(),
             layout: Layout::default(),
             told: Told::default(),
             draw: 0,

@@ -1,6 +1,8 @@
 //! The places that a proposal means by name.
 
-use socrates_model::{ClauseRole, Encounter, NodeId, Paths, Predicate, Proposal, Relation};
+use std::collections::BTreeMap;
+
+use socrates_model::{ClauseRole, Encounter, HumanId, HumanProposal, NodeId, Paths, Predicate, Proposal, Relation};
 
 use crate::graph::Net;
 
@@ -9,7 +11,7 @@ use crate::graph::Net;
 pub fn of_proposal(proposal: &Proposal) -> Vec<NodeId> {
     let own = proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup);
     let named = own.filter_map(|clause| {
-        if let Predicate::EncounterAt { place, nodes } = &clause.predicate {
+        if let Predicate::EncounterAt { place, nodes, human: None } = &clause.predicate {
             Some(nodes.clone()).filter(|_| *place == proposal.place)
         } else {
             None
@@ -21,6 +23,15 @@ pub fn of_proposal(proposal: &Proposal) -> Vec<NodeId> {
 /// The same by index.
 pub(crate) fn indices(net: &Net<'_>, proposal: &Proposal) -> Vec<usize> {
     of_proposal(proposal).iter().filter_map(|id| net.index(id)).collect()
+}
+
+/// The places of people with a place of their own, as nodes by index.
+pub(crate) fn elsewhere(net: &Net<'_>, proposal: &Proposal) -> BTreeMap<HumanId, Vec<usize>> {
+    let own = |human: &HumanProposal| {
+        let nodes = proposal.own_place(human.id)?;
+        Some((human.id, nodes.iter().filter_map(|id| net.index(id)).collect()))
+    };
+    proposal.humans.iter().filter_map(own).collect()
 }
 
 /// Whether somebody is met at one of these nodes, and everybody else at most next to it; who walks with the robot is met anywhere.
@@ -35,6 +46,7 @@ pub fn met_at(meant: &[NodeId], paths: &Paths, proposal: &Proposal) -> bool {
         let around = at.map_or(0..0, |at| at.saturating_sub(1)..(at + 2).min(paths.robot.len()));
         paths.robot.get(around).unwrap_or_default().iter().any(|node| meant.contains(node))
     };
+    let here = |encounter: &&Encounter| !along(encounter) && proposal.own_place(encounter.human).is_none();
     paths.encounters.iter().any(|encounter| meant.contains(&encounter.node))
-        && paths.encounters.iter().filter(|encounter| !along(encounter)).all(beside)
+        && paths.encounters.iter().filter(here).all(beside)
 }

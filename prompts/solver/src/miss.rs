@@ -6,7 +6,7 @@ use std::fmt;
 use socrates_maps::Ground;
 use socrates_maps::openings::OpenPlan;
 use socrates_model::proposal::WayPart;
-use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation, Side};
+use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Predicate, Relation, Side};
 
 use crate::graph::Net;
 use crate::measure::SHORTEST_M;
@@ -133,6 +133,13 @@ pub enum Miss {
         /// The class of the place.
         class: PlaceClass,
     },
+    /// No way of the robot leads over the places of all who meet it.
+    Elsewhere {
+        /// They who meet it at a place of their own, with its nodes.
+        who: Vec<(HumanId, Vec<NodeId>)>,
+        /// The class of the place of the others.
+        class: PlaceClass,
+    },
     /// No way of the robot begins, ends, leads past or keeps out where it should by name.
     Way {
         /// The parts of the way, with the nodes that count.
@@ -207,6 +214,15 @@ impl fmt::Display for Miss {
                 "{people} at `{node}` need {needs_m2:.1} m² of floor; there are {has_m2:.1} m²; ask for fewer, or for another room"
             ),
             Self::Way { parts } => f.write_str(&no_way(parts)),
+            Self::Elsewhere { who, class } => {
+                let places = who.iter().map(|(human, nodes)| format!("{human} at {}", quoted(nodes)));
+                write!(
+                    f,
+                    "this map has no path of the robot on which it meets {}, and the others at {}; take places that lie on one way",
+                    places.collect::<Vec<_>>().join(", "),
+                    an(class)
+                )
+            }
             Self::Side { who, class } => f.write_str(&no_side(who, *class)),
             Self::People { who, class } => {
                 let names = who.iter().map(|(id, relation, from)| {
@@ -231,12 +247,13 @@ impl fmt::Display for Miss {
     }
 }
 
+fn quoted(nodes: &[NodeId]) -> String {
+    nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ")
+}
+
 /// That no way of the robot does what is asked of it by name.
 fn no_way(parts: &[(WayPart, Vec<NodeId>)]) -> String {
-    let part = |(part, nodes): &(WayPart, Vec<NodeId>)| {
-        let nodes = nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ");
-        format!("{} {nodes}", part.does())
-    };
+    let part = |(part, nodes): &(WayPart, Vec<NodeId>)| format!("{} {}", part.does(), quoted(nodes));
     let parts = parts.iter().map(part).collect::<Vec<_>>().join(" and ");
     format!(
         "this map has no path of the robot that {parts} and on which it meets the people as they are asked for; take other places for \
@@ -293,6 +310,9 @@ fn one_place(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
 pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
     let proposal = problem.proposal;
     let class = proposal.place;
+    if let Some(miss) = elsewhere(problem, net) {
+        return miss;
+    }
     let indoors = || proposal.humans.iter().filter(|human| is_indoors(human) || boarding::boards(human));
     if let Some(miss) = too_short(problem, net).or_else(|| indoors().find_map(|human| shut_in(problem, net, human))) {
         return miss;
@@ -400,6 +420,18 @@ fn too_short(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
         }
     }
     Some(Miss::Short { ends, has_m, needs_m: SHORTEST_M })
+}
+
+/// Places of people on no way of the robot, though it could meet all of them at one place.
+fn elsewhere(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
+    let named = |(human, nodes): (&HumanId, &Vec<usize>)| (*human, net.named(nodes));
+    let who: Vec<(HumanId, Vec<NodeId>)> = net.elsewhere.iter().map(named).collect();
+    let mut proposal = problem.proposal.clone();
+    proposal
+        .expected_events
+        .retain(|clause| !matches!(clause.predicate, Predicate::EncounterAt { human: Some(_), .. }));
+    let alone = !who.is_empty() && search::solve(&Problem { proposal: &proposal, ..problem.clone() }).is_ok();
+    alone.then_some(Miss::Elsewhere { who, class: proposal.place })
 }
 
 /// Too few ways that meet, for somebody who crosses or for the pattern.

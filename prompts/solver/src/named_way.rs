@@ -32,6 +32,11 @@ pub(crate) fn via(proposal: &Proposal) -> Vec<NodeId> {
     demands(proposal).find(|(part, _)| *part == WayPart::Via).map(|(_, nodes)| nodes.to_vec()).unwrap_or_default()
 }
 
+/// The nodes at which the way has to begin or end.
+pub(crate) fn ends(proposal: &Proposal, end: WayPart) -> Vec<NodeId> {
+    demands(proposal).find(|(part, _)| *part == end).map(|(_, nodes)| nodes.to_vec()).unwrap_or_default()
+}
+
 /// Whether the robot comes back from its goal by the way that it came.
 pub(crate) fn returns(proposal: &Proposal) -> bool {
     demands(proposal).any(|(part, _)| part == WayPart::Back)

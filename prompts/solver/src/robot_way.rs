@@ -59,12 +59,8 @@ pub(crate) fn over(net: &Net<'_>, meet: usize, wish: &Wish) -> Vec<Route> {
                 })
                 .collect();
             found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            found
-                .into_iter()
-                .take(wish.ends)
-                .map(|(_, end)| tree.way(end))
-                .filter(|way| !way.is_empty())
-                .collect::<Vec<_>>()
+            found.truncate(wish.ends);
+            found.iter().map(|(_, end)| tree.way(*end)).filter(|way| !way.is_empty()).collect::<Vec<_>>()
         };
         arms.push((*arm, ends(wish.start, false), ends(wish.goal, true)));
     }
@@ -129,6 +125,8 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
     if mid.iter().any(past) && ![nodes.first(), nodes.last()].into_iter().flatten().any(past) {
         score += w.named_end;
     }
+    score -=
+        w.elsewhere * net.elsewhere.values().filter(|own| !nodes.iter().any(|node| own.contains(node))).count() as f64;
     let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
     score += w.of_place * of_place as f64;
     for (end, class, goal) in [(nodes.first(), wish.start, false), (nodes.last(), wish.goal, true)] {

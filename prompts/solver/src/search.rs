@@ -15,6 +15,8 @@ use crate::{Miss, Problem, Solved, edit, miss, named_way, second_meeting, throug
 
 /// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
 const ELSEWHERE_M: f64 = 3.0;
+/// Additional length of the way for each person who meets the robot elsewhere, of three at most, m.
+const ELSEWHERE_AIM_M: f64 = 6.0;
 /// Different solutions that are put in order, at most.
 const ALTERNATIVES: usize = 64;
 /// A person who wants other paths is given one of so many.
@@ -218,7 +220,7 @@ fn chosen<'a>(
         return best.get(at % best.len()).copied();
     }
     let Some(passed) = told.moves.checked_sub(1) else { return Some(first) };
-    // What is wrong with the place moves on to the next meeting node, and so does a simulation in which they did not meet.
+    // Faults of the place moves on to the next meeting node, and so does a simulation in which they did not meet.
     let [node, ..] = corners(first);
     // Of many that are as good the draw takes one again.
     let mut others: Vec<&Solution> = if wide { alternatives.to_vec() } else { by_place(solutions) };
@@ -241,6 +243,7 @@ fn wish(proposal: &Proposal, shorts: u32, ends: usize) -> Wish {
         0.3
     };
     let longer = f64::from(shorts.min(4));
+    let elsewhere = proposal.humans.iter().filter(|human| proposal.own_place(human.id).is_some()).count().min(3);
     let twice = !second_meeting::asked(proposal).is_empty();
     // Followers and overtakers need a longer way to show what they do.
     let along = has(Relation::Behind) || has(Relation::Ahead) || has(Relation::Abreast);
@@ -259,7 +262,8 @@ fn wish(proposal: &Proposal, shorts: u32, ends: usize) -> Wish {
             20.0
         } else {
             16.0
-        } + 4.0 * longer,
+        } + 4.0 * longer
+            + ELSEWHERE_AIM_M * elsewhere as f64,
         ends,
     }
 }

@@ -9,6 +9,7 @@ mod forms;
 mod group;
 mod intersection;
 mod meetings;
+mod places;
 
 use std::collections::BTreeMap;
 

@@ -6,11 +6,11 @@
 //!                                          the grammar, where it knows the language ─► dispute
 //! ```
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use socrates_model::job::Stage;
 use socrates_model::reading::ReadHuman;
-use socrates_model::statement::{Background, Became, Statement};
+use socrates_model::statement::{Became, Statement};
 use socrates_model::{Fact, FactKind, Fault, FaultCode, Proposal, Reading, Where};
 use socrates_prompts::{Account, Claim, Question, Sentence, Share, sentences};
 
@@ -39,13 +39,14 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
             bad(format!("reading.{id}"), format!("is no sentence of the request; it has {} …", known.join(", ")));
             continue;
         };
-        let Share::Asked { claims, cannot } = share else { continue };
-        if claims.is_empty() && cannot.is_none() && stated.is_empty() {
+        let Share::Asked { claims, expected, cannot } = share else { continue };
+        if claims.is_empty() && expected.is_none() && cannot.is_none() && stated.is_empty() {
             let message = format!("is empty, and nothing is stated; account for \"{}\"", sentence.shown);
             bad(format!("reading.{id}"), message);
         }
         for claim in claims {
-            if !holds(&sentence.shown, &claim.quote) {
+            // The words beside a line are for people.
+            if !claim.is_line() && !holds(&sentence.shown, &claim.quote) {
                 bad(
                     format!("reading.{id}"),
                     format!(
@@ -63,7 +64,7 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
                         stated.len() + 1
                     ),
                 );
-            } else if !ids.insert(&claim.fact) {
+            } else if !claim.is_line() && !ids.insert(&claim.fact) {
                 let what = format!("has `{}`, which another fact has; give each fact its own id", claim.fact);
                 bad(format!("reading.{id}"), what);
             }
@@ -72,48 +73,29 @@ pub(crate) fn check(account: &Account, question: &Question) -> Vec<Fault> {
     faults
 }
 
-/// The account with every sentence in it once, quotes that stand there, and an id for each fact. A sentence that was left out is given as
-/// background: what it asks for only its reader can say.
-pub(crate) fn mended(account: &Account, question: &Question) -> Account {
-    let mut taken: BTreeSet<String> = question.reading.facts.iter().map(|fact| fact.id.clone()).collect();
-    let mut shares = BTreeMap::new();
-    for sentence in sentences(&question.request) {
-        let mut share = account.0.get(&sentence.id).cloned().unwrap_or(Share::Background(Background::Setting));
-        if let Share::Asked { claims, .. } = &mut share {
-            for claim in claims {
-                if !holds(&sentence.shown, &claim.quote) {
-                    claim.quote.clone_from(&sentence.shown);
-                }
-                if taken.contains(&claim.fact) {
-                    let free = |id: &String| !taken.contains(id);
-                    claim.fact = (1_u32..).map(|number| format!("f{number}")).find(free).unwrap_or_default();
-                }
-                taken.insert(claim.fact.clone());
-            }
-        }
-        shares.insert(sentence.id, share);
-    }
-    Account(shares)
-}
-
 /// The question of a proposal that is made again, for an author that reads the request itself: what is stated and what a person wished in
 /// words binds, and what the author read before is no more than its last answer, which is shown with its account.
 pub(crate) fn again(question: &Question) -> Option<Question> {
     if question.stage != Stage::Proposal || !question.reading.by.is_author() {
         return None;
     }
-    let account = Account::of(&question.reading, &question.request);
-    if account.0.is_empty() {
+    let own = &question.reading.account;
+    let account = if own.is_empty() { Account::of(&question.reading, &question.request).lines() } else { own.clone() };
+    if account.is_empty() {
         return None;
     }
     let mut stated = socrates_offline::stated(&question.request, &question.location);
+    stated.scenario.clone_from(&question.reading.scenario);
+    // An earlier scenario of the author does not bind it.
+    let before = question.reading.scenario.as_ref().map(|scenario| crate::stated::facts(scenario, question));
     for fact in &question.reading.facts {
-        let own = matches!(fact.kind, FactKind::Asked { .. });
+        let of_scenario = before.as_ref().is_some_and(|before| before.facts.iter().any(|own| own.kind == fact.kind));
+        let own = matches!(fact.kind, FactKind::Asked { .. }) || of_scenario;
         if !own && !stated.facts.iter().any(|other| other.id == fact.id) {
             stated.facts.push(fact.clone());
         }
     }
-    Some(Question { reading: stated, account: Some(account.lines()), ..question.clone() })
+    Some(Question { reading: stated, account: Some(account), ..question.clone() })
 }
 
 /// Whether a quote stands in a sentence as it is, blanks apart.
@@ -138,6 +120,11 @@ pub(crate) fn reading(account: &Account, proposal: &Proposal, question: &Questio
     if question.request.rough_scenario.as_deref().is_some_and(|text| !text.trim().is_empty()) {
         reading.humans = proposal.humans.iter().map(read_human).collect();
     }
+    held_against(reading, question)
+}
+
+/// A reading held against the grammar, and with what the request waives.
+pub(crate) fn held_against(mut reading: Reading, question: &Question) -> Reading {
     socrates_offline::dispute(&question.request, &question.location, &mut reading);
     reading.statements =
         reading.statements.into_iter().map(|statement| statement.waived_by(&question.request)).collect();
@@ -159,8 +146,16 @@ fn read_human(human: &socrates_model::HumanProposal) -> ReadHuman {
     }
 }
 
-/// The statements of a sentence: one, or two where a part of it cannot be played.
+/// The statements of a sentence: one for what is played, one for what is expected of a robot, one for what cannot be played.
 fn statements(sentence: &Sentence, share: &Share, proposal: &Proposal) -> Vec<Statement> {
+    fates(sentence, share, |claims| Became::Read {
+        lines: claims.iter().flat_map(|claim| lines(claim, proposal)).collect(),
+        facts: claims.iter().map(|claim| claim.fact.clone()).collect(),
+    })
+}
+
+/// The statements of a sentence, of which `read` tells what its claims became.
+pub(crate) fn fates(sentence: &Sentence, share: &Share, read: impl FnOnce(&[Claim]) -> Became) -> Vec<Statement> {
     let of = |became: Became| Statement {
         at: sentence.at,
         span: sentence.span,
@@ -170,14 +165,15 @@ fn statements(sentence: &Sentence, share: &Share, proposal: &Proposal) -> Vec<St
     };
     match share {
         Share::Background(reason) => vec![of(Became::Background(*reason))],
-        Share::Asked { claims, cannot } => {
-            // Nothing beyond what is stated.
-            let read = (!claims.is_empty() || cannot.is_none()).then(|| Became::Read {
-                lines: claims.iter().flat_map(|claim| lines(claim, proposal)).collect(),
-                facts: claims.iter().map(|claim| claim.fact.clone()).collect(),
+        Share::Asked { claims, expected, cannot } => {
+            let expected = expected.as_ref().map(|words| Became::Read {
+                lines: vec![format!("expected of a robot under test: {words}")],
+                facts: Vec::new(),
             });
+            // Nothing beyond what is stated.
+            let read = (!claims.is_empty() || expected.is_none() && cannot.is_none()).then(|| read(claims));
             let unplayed = cannot.as_ref().map(|why| Became::NotPlayed { why: why.as_str().into() });
-            read.into_iter().chain(unplayed).map(of).collect()
+            read.into_iter().chain(expected).chain(unplayed).map(of).collect()
         }
     }
 }
@@ -241,7 +237,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_proposal_that_is_made_again_comes_with_its_account_and_is_bound_by_nothing_of_it() {
+    async fn a_proposal_that_is_asked_for_again_has_its_account_beside_it_and_is_bound_by_nothing_of_it() {
         let (first, _) = asked(ROUGH);
         assert_eq!(again(&first), None);
         let made = attempt(&Offline, &first).await.unwrap();
@@ -256,12 +252,8 @@ mod tests {
         let mut bound = first.reading.facts.clone();
         bound.push(wish);
         assert_eq!(asked.reading.facts, bound, "what a person wished stays");
-        let shown = asked.messages().into_iter().find(|message| message.role == socrates_prompts::Role::Assistant);
-        let shown: Value = serde_json::from_str(&shown.unwrap().text).unwrap();
-        assert_eq!(shown["reading"]["s1"], json!(["looks"]), "{shown}");
-        assert_eq!(shown["reading"].as_object().unwrap().len(), 4);
-        let same = attempt(&Says(shown.to_string()), &first).await.unwrap();
-        assert_eq!(same.written.remark(), made.written.remark(), "what is shown can be answered again");
+        let account = asked.account.unwrap();
+        assert_eq!((account["s1"].clone(), account.len()), (vec!["looks".to_owned()], 4));
     }
 
     #[tokio::test]

@@ -4,12 +4,14 @@ use serde::{Deserialize, Serialize};
 use socrates_checks::{check_behaviors, check_paths, check_proposal};
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
-use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal, Reading};
-use socrates_prompts::{Account, Message, Question, json, parse_account, parse_behaviors, parse_paths, parse_proposal};
+use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal, Reading, Scenario};
+use socrates_prompts::{
+    Account, Message, Question, json, parse_account, parse_behaviors, parse_paths, parse_proposal, parse_scenario,
+    scenario,
+};
 
-use crate::account;
 use crate::author::{Answer, AskError, Author, How};
-use crate::variants;
+use crate::{account, stated, variants};
 
 /// What an author wrote, typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -181,8 +183,8 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
     exchange.injected = answer.injected;
     exchange.answer = answer.text;
     let (written, reading, faults) = match outcome {
-        Ok((written, account)) => {
-            let (reading, faults) = checked(&written, account.as_ref(), question);
+        Ok((written, as_read)) => {
+            let (reading, faults) = checked(&written, as_read.as_ref(), question);
             (Some(written), reading, faults)
         }
         Err(faults) => (None, None, faults),
@@ -222,12 +224,33 @@ fn chosen(text: &str, question: &Question, exchange: &mut Exchange) -> Result<Op
     Ok((best < all.len()).then(|| all.swap_remove(best).text))
 }
 
-/// What a text says: the artifact, and the account of the request where the author reads it itself.
-pub(crate) fn read(text: &str, question: &Question) -> Result<(Written, Option<Account>), Vec<Fault>> {
+/// How the author reads the request.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct AsRead {
+    /// The fate of each sentence.
+    pub(crate) account: Account,
+    /// The scenario of the author; none in an answer that is a proposal.
+    pub(crate) scenario: Option<Scenario>,
+}
+
+/// Reads a text: the artifact, and the author's reading of the request where it reads it itself.
+pub(crate) fn read(text: &str, question: &Question) -> Result<(Written, Option<AsRead>), Vec<Fault>> {
     match question.stage {
         Stage::Proposal if question.reading.by.is_author() => {
-            match (parse_proposal(text, question), parse_account(text)) {
-                (Ok(proposal), Ok(account)) => Ok((Written::Proposal(proposal), Some(account))),
+            let scenario = json::object(text).is_ok_and(|answer| scenario::is_stated(&answer));
+            let proposal = if scenario {
+                parse_scenario(text).and_then(|mut all| {
+                    // Statements of the request win.
+                    all.scenario = Scenario::of(&all.scenario.stated_in(&question.request));
+                    Ok((stated::proposal(&all, question)?, Some(all.scenario)))
+                })
+            } else {
+                parse_proposal(text).map(|proposal| (proposal, None))
+            };
+            match (proposal, parse_account(text)) {
+                (Ok((proposal, scenario)), Ok(account)) => {
+                    Ok((Written::Proposal(proposal), Some(AsRead { account, scenario })))
+                }
                 (Ok(_), Err(faults)) | (Err(faults), Ok(_)) => Err(faults),
                 (Err(mut faults), Err(others)) => {
                     faults.extend(others);
@@ -236,7 +259,7 @@ pub(crate) fn read(text: &str, question: &Question) -> Result<(Written, Option<A
                 }
             }
         }
-        Stage::Proposal => parse_proposal(text, question).map(|proposal| (Written::Proposal(proposal), None)),
+        Stage::Proposal => parse_proposal(text).map(|proposal| (Written::Proposal(proposal), None)),
         Stage::Paths => parse_paths(text, question).map(|paths| (Written::Paths(paths), None)),
         Stage::Behaviors => parse_behaviors(text, question).map(|behaviors| (Written::Behaviors(behaviors), None)),
         Stage::Simulation | Stage::Scoring | Stage::Review => Err(vec![Fault::new(
@@ -250,14 +273,20 @@ pub(crate) fn read(text: &str, question: &Question) -> Result<(Written, Option<A
 /// How the request is read with an answer, where its author reads it, and every fault of the answer, warnings too.
 pub(crate) fn checked(
     written: &Written,
-    account: Option<&Account>,
+    as_read: Option<&AsRead>,
     question: &Question,
 ) -> (Option<Reading>, Vec<Fault>) {
-    let (Written::Proposal(proposal), Some(account)) = (written, account) else {
+    let (Written::Proposal(proposal), Some(AsRead { account, scenario })) = (written, as_read) else {
         return (None, check(written, question));
     };
     let mut faults = account::check(account, question);
-    let reading = account::reading(account, proposal, question);
+    let reading = match scenario {
+        Some(scenario) => {
+            faults.extend(stated::check(account, scenario));
+            stated::reading(account, scenario, proposal, question)
+        }
+        None => account::reading(account, proposal, question),
+    };
     faults.extend(check_proposal(proposal, &reading, &question.location));
     (Some(reading), faults)
 }

@@ -7,11 +7,12 @@ use socrates_prompts::{Image, Prompt, Question, Style};
 
 use crate::author::{Answer, AskError, Author};
 use crate::llm::{MAX_TOKENS, chat_request, said};
+use crate::passing;
 
 /// The request that stands for a question in a folder: without picture, as it is drawn from the map that the text describes,
 /// and without anything that depends on the server.
 fn recorded_as(question: &Question, style: Style) -> Result<(ChatRequest, Prompt), AskError> {
-    let prompt = question.prompt(&style);
+    let prompt = passing::asked(question, style.mode).prompt(&style);
     let request = chat_request(question, &prompt, Image::Off, MAX_TOKENS)?;
     Ok((request, prompt))
 }

@@ -29,9 +29,11 @@ pub mod confusion;
 mod account;
 pub mod attempt;
 pub mod building;
+pub mod here;
 pub mod job;
 pub mod pictured;
 pub mod settings;
+mod stated;
 pub mod variants;
 
 #[cfg(test)]

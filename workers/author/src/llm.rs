@@ -7,7 +7,7 @@ use socrates_llm::{
 use socrates_model::FaultCode;
 use socrates_model::job::Stage;
 use socrates_prompts::message::Message;
-use socrates_prompts::{Image, Mode, PathsForm, Picture, Prompt, Question, Role, Style};
+use socrates_prompts::{Image, PathsForm, Picture, Prompt, Question, Role, Style};
 
 use crate::author::{Answer, AskError, Author, How};
 use crate::passing;
@@ -69,9 +69,7 @@ impl Llm {
 impl Author for Llm {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let (style, grammar, change) = self.fitted(question);
-        // The baseline of ablations is shown nothing but its own answer.
-        let shown = if style.mode == Mode::Naive { None } else { passing::shown(question) };
-        let prompt = shown.as_ref().unwrap_or(question).prompt(&style);
+        let prompt = passing::asked(question, style.mode).prompt(&style);
         let room = room(question, self.max_tokens);
         let mut request = chat_request(question, &prompt, style.image, room)?;
         request.grammar = grammar;

@@ -1,20 +1,26 @@
 //! What would pass in place of a refused answer, for the author that is asked again.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
 
 use serde::Serialize;
-use socrates_checks::passing_proposal;
 use socrates_model::FaultCode;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
-use socrates_prompts::{Account, Passing, Question};
+use socrates_prompts::{Mode, Passing, Question};
 
-use crate::attempt::{Written, check, checked, read};
-use crate::{account, compiled, paths_by};
+use crate::attempt::{Written, check, read};
+use crate::{compiled, paths_by};
 
-/// The question with an example of what passes, where an answer was refused and the program finds one: the refused proposal made right,
-/// the solver's paths, the trees of the proposal's rules. It has passed the checks itself. None where there is nothing to show.
-pub(crate) fn shown(question: &Question) -> Option<Question> {
+/// The question as a model is asked it, live and recorded: with an example of what passes where there is one. The naive baseline is shown
+/// nothing but its own answer.
+pub(crate) fn asked(question: &Question, mode: Mode) -> Cow<'_, Question> {
+    let shown = if mode == Mode::Naive { None } else { shown(question) };
+    shown.map_or(Cow::Borrowed(question), Cow::Owned)
+}
+
+/// The question with an example of what passes, where an answer was refused and the program finds one: the solver's paths, the trees of
+/// the proposal's rules. It has passed the checks itself. None where there is nothing to show.
+fn shown(question: &Question) -> Option<Question> {
     // What a person wishes of an answer no check knows.
     if question.feedback.iter().all(|fault| fault.code == FaultCode::PPerson) {
         return None;
@@ -24,11 +30,11 @@ pub(crate) fn shown(question: &Question) -> Option<Question> {
 
 fn passing(question: &Question) -> Option<Passing> {
     match (question.stage, &question.proposal) {
-        (Stage::Proposal, _) => proposal(question),
         (Stage::Paths, Some(proposal)) => taken(&paths_by::answer(question, proposal), question),
         (Stage::Behaviors, Some(proposal)) => taken(&compiled::answer(question, proposal), question),
         (Stage::Paths | Stage::Behaviors, None) => None,
-        (Stage::Simulation | Stage::Scoring | Stage::Review, _) => None,
+        // The program does not know what else a scenario could mean.
+        (Stage::Proposal | Stage::Simulation | Stage::Scoring | Stage::Review, _) => None,
     }
 }
 
@@ -43,36 +49,11 @@ fn taken(text: &str, question: &Question) -> Option<Passing> {
         Written::Paths(paths) => full(paths),
         Written::Behaviors(behaviors) => full(behaviors),
     };
-    Some(Passing { answer: answer?, reading: BTreeMap::new() })
+    Some(Passing { answer: answer? })
 }
 
 fn full(artifact: &impl Serialize) -> Option<String> {
     serde_json::to_string(artifact).ok()
-}
-
-/// The refused proposal with its account made right first, as facts are read from it.
-fn proposal(question: &Question) -> Option<Passing> {
-    let (written, told) = read(question.refused.as_deref()?, question).ok()?;
-    let Written::Proposal(bad) = &written else { return None };
-    let mended = told.as_ref().map(|told| account::mended(told, question));
-    let reading = checked(&written, mended.as_ref(), question).0.unwrap_or_else(|| question.reading.clone());
-    let good = passing_proposal(bad, &reading, &question.location, &question.request.task)?;
-    let faults = checked(&Written::Proposal(good.clone()), mended.as_ref(), question).1;
-    if !hard(&faults).is_empty() {
-        return None;
-    }
-    let reading = mended.zip(told).map(|(mended, told)| changed(&told, &mended)).unwrap_or_default();
-    Some(Passing { answer: full(&good)?, reading })
-}
-
-/// The lines of each sentence of which the two say something else.
-fn changed(before: &Account, after: &Account) -> BTreeMap<String, Vec<String>> {
-    after
-        .0
-        .iter()
-        .filter(|(id, share)| before.0.get(*id) != Some(share))
-        .map(|(id, share)| (id.clone(), share.lines()))
-        .collect()
 }
 
 #[cfg(test)]
@@ -124,6 +105,9 @@ mod tests {
         for first in questions() {
             for clean in answers(&Offline, &first).await {
                 let question = &clean.question;
+                if question.stage == Stage::Proposal {
+                    continue;
+                }
                 for (draw, kind) in (0_u64..).zip(FaultKind::ALL.iter().copied()) {
                     if matches!(kind.code().family(), Family::Answer | Family::Transport) {
                         continue;
@@ -141,18 +125,14 @@ mod tests {
                         without.push(format!("{kind:?} {codes:?}"));
                         continue;
                     };
-                    // Of an account only what is changed is there.
-                    if !question.reading.by.is_author() || question.stage != Stage::Proposal {
-                        let (written, _) = read(&passing.answer, question).unwrap();
-                        assert_eq!(hard(&check(&written, question)), [], "{kind:?}");
-                    }
+                    let (written, _) = read(&passing.answer, question).unwrap();
+                    assert_eq!(hard(&check(&written, question)), [], "{kind:?}");
                     seen.insert(kind);
                 }
             }
         }
         assert_eq!(without, Vec::<String>::new());
-        let wanted =
-            FaultKind::ALL.iter().filter(|kind| matches!(kind.code().family(), Family::Proposal | Family::Paths));
+        let wanted = FaultKind::ALL.iter().filter(|kind| kind.code().family() == Family::Paths);
         // Ways that meet at another kind of place fail other checks first on this map.
         let never: Vec<&FaultKind> =
             wanted.filter(|kind| !seen.contains(*kind) && **kind != FaultKind::Gtype).collect();

@@ -4,9 +4,10 @@ use async_trait::async_trait;
 use socrates_model::job::Stage;
 use socrates_model::{FaultCode, Paths, Proposal, seeds};
 use socrates_prompts::{Mode, Question, Style};
-use socrates_solver::{Problem, Told};
+use socrates_solver::{Miss, Problem, Told};
 
 use crate::author::{Answer, AskError, Author, How};
+use crate::stated;
 
 /// Setting of a job that says who writes the paths, and its words.
 const SETTING: &str = "paths_by";
@@ -30,9 +31,9 @@ pub(crate) fn solver_from(
     style: &Style,
 ) -> Result<Option<u32>, AskError> {
     match settings.get(SETTING).map(String::as_str) {
-        None | Some(MODEL) => Ok((style.mode == Mode::Structured).then_some(REFUSALS + 1)),
+        None | Some(SOLVER) => Ok((style.mode == Mode::Structured).then_some(1)),
+        Some(MODEL) => Ok((style.mode == Mode::Structured).then_some(REFUSALS + 1)),
         Some(ALONE) => Ok(None),
-        Some(SOLVER) => Ok(Some(1)),
         Some(other) => {
             let message = format!("`{SETTING}`: `{other}` is unknown; allowed: {MODEL}, {ALONE}, {SOLVER}");
             Err(AskError::new(FaultCode::JRequest, message))
@@ -78,8 +79,19 @@ impl Author for BySolver {
 
 /// The paths of a proposal as text; where there are none, the reason under `cannot`, which is E-CANNOT.
 pub(crate) fn answer(question: &Question, proposal: &Proposal) -> String {
+    let ways = stated::asked(question)
+        .map_or_else(|| by_proposal(question, proposal), |asked| socrates_offline::solve(&asked, proposal));
+    match ways.map(|paths| serde_json::to_string_pretty(&paths)) {
+        Ok(Ok(text)) => text,
+        Ok(Err(why)) => serde_json::json!({ "cannot": why.to_string() }).to_string(),
+        Err(miss) => serde_json::json!({ "cannot": miss.to_string() }).to_string(),
+    }
+}
+
+/// The paths of a proposal whose author stated no scenario: what the task says in words is the model's to read, and stands in the proposal as
+/// classes of places.
+fn by_proposal(question: &Question, proposal: &Proposal) -> Result<Paths, Miss> {
     let former = question.refused.as_deref().and_then(|text| serde_json::from_str::<Paths>(text).ok());
-    // What the task says in words is the model's to read: it stands in the proposal as classes of places.
     let problem = Problem {
         radius_m: question.request.robot.model.radius_m,
         layout: socrates_offline::layout(&proposal.pattern),
@@ -88,12 +100,7 @@ pub(crate) fn answer(question: &Question, proposal: &Proposal) -> String {
         breadth: question.request.run.breadth,
         ..Problem::of(proposal, &question.location, NAME.into())
     };
-    let written = socrates_solver::solve(&problem).map(|solved| serde_json::to_string_pretty(&solved.paths));
-    match written {
-        Ok(Ok(text)) => text,
-        Ok(Err(why)) => serde_json::json!({ "cannot": why.to_string() }).to_string(),
-        Err(miss) => serde_json::json!({ "cannot": miss.to_string() }).to_string(),
-    }
+    socrates_solver::solve(&problem).map(|solved| solved.paths)
 }
 
 #[cfg(test)]
@@ -143,7 +150,8 @@ mod tests {
         let settings = |word: &str| BTreeMap::from([(SETTING.to_owned(), word.to_owned())]);
         let from = |settings: &BTreeMap<String, String>| solver_from(settings, &Style::default());
         assert_eq!(from(&settings("solver")), Ok(Some(1)));
-        assert_eq!((from(&BTreeMap::new()), from(&settings("model_alone"))), (Ok(Some(3)), Ok(None)));
+        assert_eq!((from(&settings("model")), from(&settings("model_alone"))), (Ok(Some(3)), Ok(None)));
+        assert_eq!(from(&BTreeMap::new()), Ok(Some(1)));
         assert_eq!(from(&settings("oracle")).unwrap_err().code, FaultCode::JRequest);
         let naive = Style { mode: Mode::Naive, ..Style::default() };
         assert_eq!(solver_from(&BTreeMap::new(), &naive), Ok(None), "a baseline has no net");

@@ -80,7 +80,8 @@ impl Keys {
 pub const DEFAULT_MODEL: &str = "gpt-4o";
 /// Models that a message names at most.
 const NAMED: usize = 12;
-/// The author of a setting, asked in a style. `auto` is the offline author unless there is a key.
+/// The author of a setting, asked in a style. `auto` is the offline author unless there is a key: it is settled before a job is made,
+/// and nothing is looked for here.
 ///
 /// # Errors
 /// [`AskError`]: `J-REQUEST` for a setting that means nobody, `T-AUTH` for a server of others without a key.
@@ -108,7 +109,7 @@ pub(crate) fn read(setting: &str) -> Result<AuthorSpec, AskError> {
 }
 
 /// How a kind of server is spoken to.
-const fn dialect(kind: ServerKind) -> Dialect {
+pub(crate) const fn dialect(kind: ServerKind) -> Dialect {
     match kind {
         ServerKind::OpenAi => Dialect::OpenAi,
         ServerKind::Responses => Dialect::Responses,
@@ -251,7 +252,7 @@ fn server(dialect: Dialect, model: &str, keys: &Keys, style: Style) -> Result<Bo
     Ok(Box::new(llm))
 }
 
-fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, AskError> {
+pub(crate) fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, AskError> {
     let url = keys.servers.get(&dialect).and_then(|server| server.url.as_deref());
     let url = url.filter(|url| !url.is_empty()).unwrap_or_else(|| dialect.default_url());
     let key = keys.of(dialect).cloned().unwrap_or_else(|| ApiKey::new(""));

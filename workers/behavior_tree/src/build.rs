@@ -142,7 +142,13 @@ fn words(node: &Node, format: Format) -> usize {
     match node.sheet.tag {
         "Sequence" | "Fallback" | "SequenceWithMemory" => usize::from(format == Format::V4),
         "AsyncSequence" | "AsyncFallback" | "Precondition" => 1,
-        "Repeat" | "RetryUntilSuccessful" | "RunOnce" | "Latch" | "EndStep" | "TimeExpiredCondition" => 1,
+        "Repeat"
+        | "RetryUntilSuccessful"
+        | "RunOnce"
+        | "Latch"
+        | "EndStep"
+        | "DoesRobotPass"
+        | "TimeExpiredCondition" => 1,
         "StopAndWaitTimerAction" => 1,
         "Parallel" | "TimeDelay" | "Delay" | "Timeout" | "Sleep" => 2,
         _ => 0,

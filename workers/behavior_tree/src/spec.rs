@@ -205,8 +205,15 @@ fn end(rule: &Rule) -> Option<NodeSpec> {
     let Some(number) = rule.step else { return timer };
     // Somebody who goes back, or to another place, is at the end of their path before.
     let leads = matches!(rule.act, Action::TurnBack | Action::GoTo { .. });
+    // A robot that passed before the step began does not end it.
     let ends = |trigger: &Trigger| {
-        if leads && *trigger == Trigger::GoalReached { Some(NodeSpec::new("HasArrived")) } else { condition(trigger) }
+        if leads && *trigger == Trigger::GoalReached {
+            Some(NodeSpec::new("HasArrived"))
+        } else if *trigger == Trigger::RobotPassed {
+            Some(NodeSpec::new("DoesRobotPass"))
+        } else {
+            condition(trigger)
+        }
     };
     let mut until: Vec<NodeSpec> = rule.until.iter().filter_map(ends).collect();
     let until = if until.len() > 1 { Some(NodeSpec::of("Sequence", "until", until)) } else { until.pop() };

@@ -1,6 +1,6 @@
 //! What a tree sees and what it can do.
 
-use socrates_model::{Action, AgentId, Gesture, HumanId, SimTime};
+use socrates_model::{Action, AgentId, Gesture, HumanId, SimTime, Trigger};
 
 use crate::leaf::LeafCall;
 use crate::status::Status;
@@ -22,10 +22,14 @@ pub trait World {
     }
     /// The gesture the robot makes.
     fn robot_gesture(&self) -> Option<Gesture>;
-    /// Whether the robot has passed this human ([`Trigger::RobotPassed`](socrates_model::Trigger::RobotPassed)); a world
+    /// Whether the robot has passed this human ([`Trigger::RobotPassed`]); a world
     /// without such a memory says no.
     fn robot_passed(&self) -> bool {
         false
+    }
+    /// Whether the robot passes this human, of which a tree remembers how near it has been, m.
+    fn robot_passes(&self, nearest_m: f64) -> bool {
+        self.robot_distance_m().is_some_and(|distance_m| Trigger::is_passed(distance_m, nearest_m))
     }
     /// For how long the robot has stood, s; 0 while it moves and before it has set off.
     fn robot_stood_s(&self) -> f64 {
@@ -35,7 +39,7 @@ pub trait World {
     fn steps_ended(&self, _id: HumanId) -> u32 {
         0
     }
-    /// Whether somebody is done ([`Trigger::Done`](socrates_model::Trigger::Done)).
+    /// Whether somebody is done ([`Trigger::Done`]).
     fn is_done(&self, _id: HumanId) -> bool {
         false
     }

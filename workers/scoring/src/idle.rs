@@ -105,7 +105,7 @@ fn a_robot_that_has_stood_all_the_while_does_not_stop_for_a_sign() {
 #[test]
 fn a_place_at_which_nobody_meets_the_robot_is_none_of_an_encounter() {
     let place = socrates_model::PlaceClass::Corridor;
-    let case = case(Predicate::EncounterAt { place, nodes: Vec::new() });
+    let case = case(Predicate::EncounterAt { place, nodes: Vec::new(), human: None });
     let far = recording(&[robot(), Walk::human(1, 18., 0.5, 0., 0.)], 20.0, 0.01);
     assert_eq!(standing(&case, &far).0, Standing::NotTriggered);
     let meets = recording(&[robot(), Walk::human(1, 8., 0.7, -0.8, 0.)], 20.0, 0.01);

@@ -66,6 +66,32 @@ fn a_human_who_walks_the_same_way_does_not_come_head_on() {
     assert_eq!(missing, Verdict::Contradicted);
 }
 
+/// A corridor that turns to the left, and the robot's way round the corner.
+fn corner() -> Case {
+    let nodes = [("a", "CORRIDOR", -8., 0.), ("m", "BLIND CORNER", 0., 0.), ("b", "CORRIDOR", 0., 8.)];
+    Case {
+        place: floor(&[(-10., 10., 2., 11.)], &nodes, &[("a", "m"), ("m", "b")]),
+        plan: proposal(1, vec![must("c1", Predicate::HeadOn { human: H1 })]),
+        ways: paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m")]),
+        reading: None,
+    }
+}
+
+#[test]
+fn round_a_corner_people_come_towards_the_robot_along_its_way() {
+    let robot = || Walk::through(AgentId::Robot, &[(0., -8., -0.5), (10., -0.5, -0.5), (20., 0.5, 8.)]);
+    // They pass each other in the corner itself, where neither heading tells of it.
+    let human = Walk::human_through(1, &[(0., 0.5, 9.), (9.5, 0.2, 0.6), (20., -8., 0.6)]);
+    let report = corner().judge(&recording(&[robot(), human], 20.0, 0.01));
+    let head_on = report.clauses.iter().find(|clause| clause.id == "c1").unwrap();
+    assert_eq!(head_on.standing, Standing::Holds, "{}", head_on.evidence);
+    // Ahead of the robot and on its way, but walking the same way.
+    let away = Walk::human_through(1, &[(0., -4., 0.), (8., -0.2, 0.), (20., 0.2, 8.)]);
+    let report = corner().judge(&recording(&[robot(), away], 20.0, 0.01));
+    let head_on = report.clauses.iter().find(|clause| clause.id == "c1").unwrap();
+    assert_ne!(head_on.standing, Standing::Holds, "{}", head_on.evidence);
+}
+
 #[test]
 fn an_overlap_or_a_jump_proves_nothing() {
     let through = frontal().verdict(&[robot(), Walk::human(1, 8., -0.4, -0.8, 0.)], 20.0);
@@ -200,7 +226,7 @@ fn an_order_of_which_a_part_never_came_is_told_of_by_that_part() {
         within_s: 2.0,
     };
     let order = |first: &str, then: &str| Predicate::Order { first: first.into(), then: then.into() };
-    let meets = must("c2", Predicate::EncounterAt { place: PlaceClass::Corridor, nodes: vec![] });
+    let meets = must("c2", Predicate::EncounterAt { place: PlaceClass::Corridor, nodes: vec![], human: None });
     case.plan.expected_events = vec![must("c1", waits), meets, must("c3", order("c2", "c1"))];
     let run = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
     let told = |case: &Case| {
@@ -328,7 +354,7 @@ pub(crate) fn elevator() -> Case {
             must("c2", Predicate::StaysInside { human: HumanId::new(2), door: String::new() }),
             must("c3", Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }),
             must("c4", Predicate::HiddenUntil { human: HumanId::new(2), within_m: 5.0 }),
-            must("c5", Predicate::EncounterAt { place: PlaceClass::Elevator, nodes: vec![] }),
+            must("c5", Predicate::EncounterAt { place: PlaceClass::Elevator, nodes: vec![], human: None }),
             must("c6", Predicate::Looks { human: HumanId::new(2), for_s: 2.0 }),
             must("c7", Predicate::Order { first: "c3".into(), then: "c1".into() }),
             Clause { role: ClauseRole::Outcome, ..must("o1", Predicate::RobotEntersLast) },

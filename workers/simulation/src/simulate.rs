@@ -51,7 +51,7 @@ pub fn setup(
     }
 }
 
-/// Who drives in a run.
+/// The drivers of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Driven<'a> {
     /// The planner.
@@ -72,7 +72,7 @@ impl<'a> From<&'a PlannerName> for Driven<'a> {
 }
 
 impl<'a> Driven<'a> {
-    /// Who drives in this run of a request.
+    /// The drivers of this run of a request.
     #[must_use]
     pub fn of(request: &'a Request, planner: &'a PlannerName) -> Self {
         let nav2 = request.robot.nav2.get(planner).map(String::as_str);
@@ -164,7 +164,7 @@ fn task(setup: &Setup) -> impl FnOnce(Arc<DistanceField>) -> Mission + use<> {
     let waypoints = waypoints(graph, &setup.paths.robot, setup.waypoints);
     let (robot, grid, seed) = (setup.robot, setup.location.grid.clone(), setup.seed);
     let doors = Enclosures::of(&setup.location).doors(&setup.location);
-    let route = graph.polyline(&setup.paths.robot);
+    let route = socrates_engine::intended_way(setup).0.points().to_vec();
     let script = setup.proposal.robot.script.clone();
     let place = |node: &NodeId| graph.node(node).map(|node| node.at);
     // The script's `at_encounter` means the first of somebody who meets the robot several times.

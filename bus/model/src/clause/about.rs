@@ -45,6 +45,7 @@ impl Predicate {
             | Self::StartsAt { agent: AgentId::Human(human), .. }
             | Self::Reaches { agent: AgentId::Human(human), .. } => Some(*human),
             Self::Follows { leader: AgentId::Human(human), .. } => Some(*human),
+            Self::EncounterAt { human, .. } => *human,
             Self::Humans { .. }
             | Self::Flow { .. }
             | Self::Density { .. }
@@ -58,7 +59,6 @@ impl Predicate {
             | Self::Queues { .. }
             | Self::Order { .. }
             | Self::Before { .. }
-            | Self::EncounterAt { .. }
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
             | Self::RobotWay { .. }

@@ -229,11 +229,6 @@ impl Deed {
             | Self::ChangePace => None,
         }
     }
-
-    /// Whether somebody stands for it, so that they can turn to whomever a sign is made to.
-    pub(crate) const fn stands(&self) -> bool {
-        matches!(self, Self::StandStill | Self::LookAtRobot | Self::LookAt(_))
-    }
 }
 
 impl Step {

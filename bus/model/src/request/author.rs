@@ -68,7 +68,7 @@ impl ServerKind {
 #[serde(try_from = "String", into = "String")]
 #[schemars(with = "String")]
 pub enum AuthorSpec {
-    /// What the configuration says; without a key the offline author.
+    /// What the configuration says; without a key a server on this machine, else the offline author.
     #[default]
     Auto,
     /// Rules.

@@ -253,7 +253,6 @@ fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
         ("does = [{ say = \"WAIT\", to = \"bob\" }]\n", "my.toml:6:30 `to`: `bob` is nobody (a)"),
         ("does = [{ act = \"block\", to = \"all\" }]\n", "`human.does.to`: is said of a step without a sign"),
         ("does = [{ say = \"WAIT\", to = \"a\" }]\n", "`human.does`: is done to themselves"),
-        ("does = [{ say = \"WAIT\", act = \"block\", to = \"robot\" }]\n", "is said of a sign that is made walking"),
         ("does = [{ say = \"WAITT\" }]\n", "`WAITT` is no sign (nearest: WAIT; signs: WAIT, PROCEED"),
         ("does = [{ act = \"turn_back\" }]\n", "`human.does.act`: walks, but stands by its relation"),
         ("does = [{ act = \"change_pace\" }]\n", "`human.does.pace`: is missing for change_pace"),
@@ -265,11 +264,6 @@ fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
         ),
         ("does = [{ act = \"block\", pace = \"slow\" }]\n", "`human.does.pace`: belongs to act"),
         ("reacts = [{ when = \"always\", act = { go_to = \"room\" } }]\n", "changes the way or the pace for good"),
-        (
-            "does = [{ say = \"WAIT\", to = \"robot\" }]\n[[human]]\nrelation = \"frontal\"\n\
-             does = [{ when = { human_says = [\"a\", \"WAIT\"] }, act = \"block\" }]\n",
-            "WAIT of `a` is made to somebody else",
-        ),
         (
             "[robot]\ndoes = [{ hold_until = \"human_says\" }]\n",
             "`human_says` is not written as \"human_says\" (write { human_says = \"WAIT\" })",

@@ -89,26 +89,18 @@ impl Door<'_> {
                 format!("act: {}; say: {GESTURES}", Deed::allowed()),
             );
         }
-        let to = self.to(&section, (act.as_ref(), say.is_some()), names);
+        let to = self.to(&section, say.is_some(), names);
         let pace = self.step_pace(&section, act.as_ref());
         let near_m = self.step_near(&section, act.as_ref());
         Some(Step { when, act, for_s, until, say, to, pace, near_m })
     }
 
     /// To whom a sign is made.
-    fn to<'n>(
-        &mut self,
-        section: &Section<'n>,
-        (act, says): (Option<&Deed>, bool),
-        names: &mut Names<'n>,
-    ) -> Option<String> {
+    fn to<'n>(&mut self, section: &Section<'n>, says: bool, names: &mut Names<'n>) -> Option<String> {
         let node = section.get("to")?;
         let to = self.maybe::<String>(section, "to", "\"robot\", \"all\" or the name of a person")?;
         if !says {
             self.bad(section.key("to"), node.at, "is said of a step without a sign", format!("say: {GESTURES}"));
-        } else if to != "all" && act.is_some_and(|act| !act.stands()) {
-            let hint = "people stand and turn to whomever they make a sign to: leave `act` out, or leave `to` out";
-            self.bad(section.key("to"), node.at, "is said of a sign that is made walking", hint);
         }
         if to != "all" {
             names.push(Naming { who: to.clone(), key: "to", node: Some(node), robot: true, several: false });
@@ -213,7 +205,6 @@ impl Door<'_> {
                 }
             }
         }
-        self.unheard(form, nodes);
         let starts: Vec<(usize, usize)> = (0..form.humans.len())
             .flat_map(|who| (0..form.humans.get(who).map_or(0, |human| human.does.len())).map(move |step| (who, step)))
             .collect();
@@ -233,36 +224,6 @@ impl Door<'_> {
             );
             let at = nodes.get(start.0).and_then(|node| place(node, "does", start.1));
             self.bad("human.does.when", at, found, "remove one of the triggers `did` and `done`");
-        }
-    }
-}
-
-impl Door<'_> {
-    /// Gestures that are waited for, and that are made to somebody else alone.
-    fn unheard(&mut self, form: &Form, nodes: &[Node]) {
-        for (who, (human, node)) in form.humans.iter().zip(nodes).enumerate() {
-            for (key, steps) in [("does", &human.does), ("reacts", &human.reacts)] {
-                for (number, step) in steps.iter().enumerate() {
-                    for trigger in step.when.iter().chain(&step.until) {
-                        let When::HumanSays(name, gesture) = trigger else { continue };
-                        let speakers = meant(form, name).into_iter().filter_map(|who| form.humans.get(who));
-                        let made: Vec<&Step> = speakers
-                            .flat_map(|speaker| speaker.does.iter().chain(&speaker.reacts))
-                            .filter(|step| step.say == Some(*gesture))
-                            .collect();
-                        let heard = |step: &&&Step| match step.to.as_deref() {
-                            None | Some("all") => true,
-                            Some("robot") => false,
-                            Some(to) => meant(form, to).contains(&who),
-                        };
-                        if !made.is_empty() && made.iter().find(heard).is_none() {
-                            let found = format!("{gesture} of `{name}` is made to somebody else");
-                            let hint = "to = \"all\", or this person's name, at the sign";
-                            self.bad(format!("human.{key}"), place(node, key, number), found, hint);
-                        }
-                    }
-                }
-            }
         }
     }
 }
@@ -299,7 +260,7 @@ fn meant(form: &Form, name: &str) -> Vec<usize> {
     found
 }
 
-/// What is wrong with waiting for somebody's steps.
+/// Faults of waiting for somebody's steps.
 fn never_ends(form: &Form, trigger: &When) -> Option<(String, String)> {
     let (When::Did(name, _) | When::Done(name)) = trigger else { return None };
     let end = || "give that step an end: for_s = 5.0, or until = \"robot_passed\"".to_owned();

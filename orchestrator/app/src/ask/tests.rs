@@ -78,7 +78,7 @@ fn look(about: About) -> Look {
     let config = Config::load(None, std::iter::empty(), &[]).unwrap();
     let prepared = prepare_text("look", REQUEST, "look", Path::new("."), Some(&RunOptions::plain(1)), &config).unwrap();
     let question = Question::first(prepared.request.clone(), prepared.reading.clone(), prepared.location.clone(), 1);
-    let proposal = parse_proposal(&Offline::answer(&question), &question).unwrap();
+    let proposal = parse_proposal(&Offline::answer(&question)).unwrap();
     let asked = Question { proposal: Some(proposal.clone()), ..question.clone() };
     let draft = about == About::Draft;
     let paths = Question { stage: Stage::Paths, ..asked.clone() };

@@ -12,7 +12,7 @@ use crate::{batch, library_index};
 
 /// One scenario with all its runs.
 #[derive(Debug)]
-pub(super) struct Scenario {
+pub(super) struct FoundScenario {
     /// Its name: that of its folder.
     pub(super) name: String,
     /// Its folder.
@@ -24,7 +24,7 @@ pub(super) struct Scenario {
     failed: Vec<(String, Run)>,
 }
 
-impl Scenario {
+impl FoundScenario {
     fn read(dir: &Path, name: String) -> Result<Self, Diagnostic> {
         let (bundle, reports) = bundle::read_with_reports(dir, |_, _| false)?;
         Ok(Self {
@@ -59,7 +59,7 @@ impl Scenario {
 #[derive(Debug)]
 pub(super) struct Found {
     /// Scenarios, in order of the folders and, in a library, of its list.
-    pub(super) scenarios: Vec<Scenario>,
+    pub(super) scenarios: Vec<FoundScenario>,
     /// Scenarios that are not compared, and why.
     pub(super) left_out: Vec<(String, String)>,
 }
@@ -71,7 +71,7 @@ pub(super) fn read(roots: &[PathBuf]) -> Result<Found, Diagnostic> {
         if bundle::is_bundle(root) {
             let name =
                 root.file_name().map_or_else(|| root.display().to_string(), |name| name.to_string_lossy().into_owned());
-            found.scenarios.push(Scenario::read(root, name)?);
+            found.scenarios.push(FoundScenario::read(root, name)?);
             continue;
         }
         folder(root, &mut found)?;
@@ -112,7 +112,7 @@ fn folder(root: &Path, found: &mut Found) -> Result<(), Diagnostic> {
     }
     names.extend(there.into_iter().filter(|name| !listed.contains(name)));
     for name in names {
-        match Scenario::read(&root.join(&name), name.clone()) {
+        match FoundScenario::read(&root.join(&name), name.clone()) {
             Ok(scenario) => found.scenarios.push(scenario),
             Err(why) => found.left_out.push((name, why.what)),
         }

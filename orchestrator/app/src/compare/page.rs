@@ -6,7 +6,7 @@ use socrates_draw::{Beside, ComparePage, Head, MeanRow, MetricRow, Part, Planner
 use socrates_model::{PlannerName, Recording, Report, Run, Verdict};
 use socrates_scoring::compare::{Cause, Comparison, Outcome, Row};
 
-use super::found::{Found, Scenario};
+use super::found::{Found, FoundScenario};
 use crate::bundle::{self, Bundle};
 use crate::exit::Diagnostic;
 use crate::files;
@@ -40,7 +40,7 @@ pub(super) fn write(
     rows: &Rows,
 ) -> Result<usize, Diagnostic> {
     let mut page = ComparePage::default();
-    let mut wanted: Vec<(usize, u64, &Scenario)> = Vec::new();
+    let mut wanted: Vec<(usize, u64, &FoundScenario)> = Vec::new();
     for scenario in &found.scenarios {
         let mut seeds: Vec<u64> = scenario.entries().map(|entry| entry.seed).collect();
         seeds.sort_unstable();
@@ -79,7 +79,7 @@ pub(super) fn write(
 fn add(
     page: &mut ComparePage,
     file: &Path,
-    scenario: &Scenario,
+    scenario: &FoundScenario,
     seed: u64,
     planners: &[PlannerName],
 ) -> Result<bool, Diagnostic> {

@@ -179,7 +179,7 @@ fn refused(case: &Case) -> Option<(Stage, Vec<Fault>)> {
     if ask.reading.problems.iter().any(|fault| !fault.is_soft()) {
         return None;
     }
-    match socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask) {
+    match socrates_prompts::parse_proposal(&Offline::answer(&ask)) {
         Ok(proposal) => ask.proposal = Some(proposal),
         Err(faults) => return Some((Stage::Proposal, faults)),
     }

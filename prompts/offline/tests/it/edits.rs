@@ -10,7 +10,7 @@ use crate::common::question;
 /// A scenario as the stages write it.
 fn draft(on: &str, text: &str) -> (Question, Draft) {
     let mut ask = question(on, text);
-    let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask).unwrap();
+    let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask)).unwrap();
     ask.proposal = Some(proposal.clone());
     ask.stage = Stage::Paths;
     let paths = socrates_prompts::parse_paths(&Offline::answer(&ask), &ask).unwrap();

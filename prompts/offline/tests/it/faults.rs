@@ -9,7 +9,7 @@ use socrates_prompts::Question;
 /// The question with its proposal.
 fn proposed(on: &str, text: &str) -> (Question, Proposal) {
     let mut ask = crate::common::question(on, text);
-    let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask).unwrap();
+    let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask)).unwrap();
     ask.proposal = Some(proposal.clone());
     (ask, proposal)
 }
@@ -153,7 +153,7 @@ fn a_proposal_that_repeats_another_is_drawn_anew() {
         .map(|times| {
             let feedback = vec![Fault::new(FaultCode::PDup, "pattern", "as an earlier one"); times];
             let ask = Question { feedback, ..first.clone() };
-            socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask).unwrap().pattern
+            socrates_prompts::parse_proposal(&Offline::answer(&ask)).unwrap().pattern
         })
         .collect();
     assert!(patterns.len() >= 3, "{patterns:?}");

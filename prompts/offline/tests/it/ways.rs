@@ -11,10 +11,32 @@ use socrates_prompts::Question;
 fn paths(request: &Request, location: &Location, seed: u64) -> Result<Paths, String> {
     let reading = socrates_offline::read(request, location);
     let mut ask = Question::first(request.clone(), reading, location.clone(), seed);
-    let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask).map_err(|why| format!("{why:?}"))?;
+    let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask)).map_err(|why| format!("{why:?}"))?;
     ask.stage = Stage::Paths;
     ask.proposal = Some(proposal);
     socrates_prompts::parse_paths(&Offline::answer(&ask), &ask).map_err(|why| format!("{why:?}"))
+}
+
+/// Three people at three places that no way without a node twice leads over.
+#[test]
+fn people_at_places_of_dead_ends_are_met_on_a_way_that_comes_back() {
+    for (on, places) in [
+        ("hospital", ["corridor", "corridor end", "pharmacy room"]),
+        ("warehouse", ["intersection", "packing area", "break room"]),
+        ("office", ["intersection", "corridor end", "kitchen"]),
+    ] {
+        let people = places.map(|place| serde_json::json!({ "role": "visitor", "relation": "static", "place": place }));
+        let request =
+            serde_json::json!({ "location": on, "social_context": "", "task": "Deliver mail", "human": people });
+        let location = socrates_maps::shipped::load(on).unwrap();
+        let paths =
+            paths(&serde_json::from_value(request).unwrap(), &location, 1).unwrap_or_else(|why| panic!("{on}: {why}"));
+        let met: std::collections::BTreeSet<_> = paths.encounters.iter().map(|meet| &meet.node).collect();
+        assert_eq!(met.len(), 3, "{on}: {:?}", paths.encounters);
+        let nodes: std::collections::BTreeSet<_> = paths.robot.iter().collect();
+        assert!(nodes.len() < paths.robot.len(), "{on}: {:?}", paths.robot);
+        assert!(met.iter().all(|node| nodes.contains(node)), "{on}: {paths:?}");
+    }
 }
 
 /// The shortest free way on the grid over the way of the graph.

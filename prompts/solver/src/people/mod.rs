@@ -86,6 +86,9 @@ pub(crate) struct Taken<'a> {
     pub(crate) entry: Option<usize>,
 }
 
+/// Cost of a way that does not end at the place by name where it should.
+const NO_END: f64 = 30.0;
+
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
 const BAD_END: f64 = 8.0;
 
@@ -124,7 +127,7 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
     if sides::walks_along(human.relation) && !sides::has_floor(taken.net, route, human, route.meet) {
         return None;
     }
-    match human.relation {
+    let way = match human.relation {
         Relation::Frontal => frontal::way(human, route, taken),
         Relation::Crossing => crossing::way(human, route, taken),
         Relation::Behind => behind::way(human, route, taken, along),
@@ -139,7 +142,26 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
         Relation::Leaving => leaving::way(human, route, taken),
         Relation::Staying => staying::way(human, route, taken),
         Relation::Aside => aside::way(human, route, taken),
-    }
+    };
+    way.map(|way| to_end(way, human, taken))
+}
+
+/// The way led on to the place by name where it ends, from the node after the meeting on and never back over its own nodes; dear where there
+/// is none, or where it begins there.
+fn to_end(way: Way, human: &HumanProposal, taken: &Taken<'_>) -> Way {
+    let (net, ends) = (taken.net, taken.net.ends_of(human.id));
+    let met = way.nodes.iter().position(|node| *node == way.meet);
+    let Some(met) = met.filter(|_| !ends.is_empty() && way.nodes.len() > 1) else { return way };
+    let head: Vec<usize> = way.nodes.iter().copied().take(met + 2).collect();
+    let (Some(first), Some(last)) = (head.first().copied(), head.last().copied()) else { return way };
+    let tree = net.tree(last, &|node| head.contains(&node));
+    let reached = ends.iter().copied().filter(|node| tree.length_m(*node).is_finite());
+    let cost = |node: usize| tree.length_m(node) + if taken.can_end(node) { 0.0 } else { BAD_END };
+    let end = reached.min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+    let away = |end: &usize| (net.at(*end) - net.at(first)).norm() >= ONWARD_M;
+    let Some(end) = end.filter(away) else { return Way { cost: way.cost + NO_END, ..way } };
+    let nodes: Vec<usize> = head.iter().copied().chain(tree.way(end).into_iter().skip(1)).collect();
+    Way { nodes, cost: way.cost + 0.1 * tree.length_m(end), ..way }
 }
 
 fn before_m(net: &Net<'_>, route: &Route) -> f64 {
@@ -148,7 +170,25 @@ fn before_m(net: &Net<'_>, route: &Route) -> f64 {
 
 /// How far a human walks until the robot is at the meeting node, m.
 fn ideal_m(human: &HumanProposal, net: &Net<'_>, route: &Route) -> f64 {
-    before_m(net, route) / ROBOT_MPS * human.speed_mps.unwrap_or(HUMAN_MPS)
+    let in_time_m = before_m(net, route) / ROBOT_MPS * human.speed_mps.unwrap_or(HUMAN_MPS);
+    waits_m(human).map_or(in_time_m, |near_m| in_time_m.min(near_m))
+}
+
+/// Distance to the meeting at which people wait for others at first, m; for the robot it is the distance at which they set off, less a margin.
+const WAITS_M: f64 = 6.0;
+const SOONER_M: f64 = 1.5;
+const LEAST_WAIT_M: f64 = 3.0;
+
+/// Distance to the meeting, m, of a person whose first step is to wait; none where it is not.
+fn waits_m(human: &HumanProposal) -> Option<f64> {
+    let first = human.rules.iter().find(|rule| rule.step == Some(1))?;
+    if !first.act.stands() || first.when != [Trigger::Always] {
+        return None;
+    }
+    let near = first.until.iter().filter_map(|trigger| {
+        if let Trigger::RobotNear(m) | Trigger::RobotVisible(m) = trigger { Some(m - SOONER_M) } else { None }
+    });
+    Some(near.fold(WAITS_M, f64::min).max(LEAST_WAIT_M))
 }
 
 /// Lengthens a way that ends where it may not, straight on, to the next node where it may.
@@ -171,7 +211,7 @@ fn onward<'a>(nodes: &mut Vec<usize>, taken: &Taken<'a>, may_end: impl Fn(&Taken
     }
 }
 
-/// Whoever the robot follows goes on past the robot's goal, so that both get to where they go.
+/// A person whom the robot follows goes on past its goal, so that both get to where they go.
 pub(crate) fn led_past(mut way: Way, taken: &Taken<'_>) -> Way {
     onward(&mut way.nodes, taken, Taken::can_end);
     way.cost += taken.end_cost(&way.nodes);

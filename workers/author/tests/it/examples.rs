@@ -1,7 +1,6 @@
 //! Every worked example that a prompt shows would itself be accepted: read and checked like an answer of a model.
 
 use socrates_author::{Says, Written, attempt};
-use socrates_model::ReadBy;
 use socrates_model::job::Stage;
 use socrates_prompts::{BehaviorsForm, PathsForm, Style, examples};
 
@@ -13,8 +12,8 @@ fn styles() -> Vec<Style> {
 #[tokio::test]
 async fn every_example_of_every_stage_and_form_passes_the_checks_without_a_warning() {
     for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
-        for (style, by) in styles().into_iter().flat_map(|style| [(style, ReadBy::Grammar), (style, ReadBy::Author)]) {
-            let shown = examples::worked(stage, &style, by, by == ReadBy::Grammar);
+        for style in styles() {
+            let shown = examples::worked(stage, &style);
             assert_eq!(shown.len(), 2);
             for (question, answer) in shown {
                 // The form that servers are told to enforce takes it as well.
@@ -31,12 +30,12 @@ async fn an_example_means_the_same_in_every_form() {
     let mut paths = Vec::new();
     let mut actions = Vec::new();
     for style in styles() {
-        let (question, answer) = examples::worked(Stage::Paths, &style, ReadBy::Grammar, true).remove(0);
+        let (question, answer) = examples::worked(Stage::Paths, &style).remove(0);
         let Written::Paths(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
             panic!()
         };
         paths.push((read.robot, read.humans, read.encounters));
-        let (question, answer) = examples::worked(Stage::Behaviors, &style, ReadBy::Grammar, true).remove(0);
+        let (question, answer) = examples::worked(Stage::Behaviors, &style).remove(0);
         let Written::Behaviors(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
             panic!()
         };
@@ -50,20 +49,16 @@ async fn an_example_means_the_same_in_every_form() {
 /// What a question shows as refused is refused with the fault that it names.
 #[tokio::test]
 async fn what_is_shown_as_refused_is_refused_for_the_reason_that_is_given() {
-    let proposal = [(Stage::Proposal, Style::default(), examples::REFUSED_PROPOSAL)];
-    let paths = PathsForm::ALL.iter().map(|form| {
+    for form in PathsForm::ALL {
         let style = Style { paths: *form, ..Style::default() };
-        (Stage::Paths, style, examples::refused_paths(*form))
-    });
-    for (stage, style, shown) in proposal.into_iter().chain(paths) {
-        let (question, mut answer) = examples::worked(stage, &style, ReadBy::Author, true).remove(0);
+        let shown = examples::refused_paths(*form);
+        let (question, mut answer) = examples::worked(Stage::Paths, &style).remove(0);
         let (part, told) = shown.trim_start_matches('`').split_once("`: ").unwrap();
         let part: serde_json::Value = serde_json::from_str(&format!("{{{part}}}")).unwrap();
         let (name, value) = part.as_object().unwrap().iter().next().unwrap();
-        let home = if stage == Stage::Proposal { "expected_events" } else { "humans" };
-        answer[home][name] = value.clone();
+        answer["humans"][name] = value.clone();
         let refused = attempt(&Says(answer.to_string()), &question).await.unwrap_err();
         let codes: Vec<&str> = refused.faults.iter().map(|fault| fault.code.code()).collect();
-        assert!(codes.contains(&told.split(',').next().unwrap()), "{stage}: {codes:?}");
+        assert!(codes.contains(&told.split(',').next().unwrap()), "{form:?}: {codes:?}");
     }
 }

@@ -57,6 +57,9 @@ impl World for CaseWorld<'_> {
     fn robot_passed(&self) -> bool {
         self.holds(&Trigger::RobotPassed)
     }
+    fn robot_passes(&self, _nearest_m: f64) -> bool {
+        self.holds(&Trigger::RobotPassed)
+    }
     fn robot_stood_s(&self) -> f64 {
         let stood = |trigger: &Trigger| if let Trigger::StoppedFor(secs) = trigger { Some(*secs) } else { None };
         self.true_numbers(stood).fold(0.0, f64::max)

@@ -19,7 +19,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
         PortSheet::must("message", PortKind::Gesture, "the gesture"),
         PortSheet::must("to", PortKind::Count(0), "to whom: 0 for the robot, 1 for human_1"),
     ],
-    about: "makes a gesture to one listener, which lasts until the next MakeGesture; nobody else notices it",
+    about: "makes a gesture to one listener, which lasts until the next MakeGesture; the robot takes it for its own only where it is the listener",
     role: Role::Says,
     tick,
     halt: halt_leaf,

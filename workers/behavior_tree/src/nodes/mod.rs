@@ -89,6 +89,7 @@ pub const CATALOG: &[&NodeSheet] = &[
     &robot_moved::SHEET,
     &robot_stopped::SHEET,
     &robot_passed::SHEET,
+    &robot_passed::SINCE,
     &robot_says::SHEET,
     &human_says::SHEET,
     &time_expired::SHEET,

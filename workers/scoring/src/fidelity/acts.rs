@@ -31,11 +31,11 @@ const EARLY_SECS: f64 = 0.5;
 /// A look counts from this near where there is no map to tell lines of sight, m.
 const LOOK_REACH_M: f64 = 10.0;
 /// Distance within which a gesture can be noticed, m.
-const GESTURE_M: f64 = 8.0;
+const GESTURE_M: f64 = Gesture::SEEN_M;
 /// A gesture with a reason comes so long after it at most, s.
 const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
-pub(super) const ASIDE_M: f64 = 0.7;
+pub(super) const ASIDE_M: f64 = 0.6;
 /// Somebody is seen to stand when the robot comes this near, m: as far as anybody sees it.
 const STANDS_REACH_M: f64 = 15.0;
 /// Speed away from the robot that is running from it, m/s.
@@ -419,6 +419,7 @@ pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> V
 /// Somebody who follows, comes up to the robot, gets away from it or out of its way goes so far for it by themselves, m.
 const FOLLOWS_M: f64 = 0.5;
 const GOES_M: f64 = 0.3;
+const STEPS_ASIDE_M: f64 = 0.2;
 /// What the motion shows may begin a little sooner than what the log tells, and last longer, s.
 const AROUND_SECS: f64 = 0.5;
 
@@ -438,7 +439,7 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
         Action::RunAway => most(begin.away(), false) >= GOES_M,
         Action::GiveWay | Action::MakeRoom => {
             let facing = begin.robot.facing();
-            most(Vector::new(-facing.y, facing.x), true) >= GOES_M
+            most(Vector::new(-facing.y, facing.x), true) >= STEPS_ASIDE_M
         }
         Action::TurnBack | Action::GoTo { .. } => way_m() >= GOES_M,
         // Somebody who stands there facing the robot all the time has not looked up. By their tree they turn however little.

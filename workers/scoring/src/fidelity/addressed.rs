@@ -2,7 +2,7 @@
 
 use socrates_model::geometry::wrap_angle;
 use socrates_model::rule::RobotWhen;
-use socrates_model::{AgentId, EventKind, Gesture, HumanId};
+use socrates_model::{AgentId, EventKind, Gesture, HumanId, Rule};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::{MOMENT_SECS, Signals};
@@ -12,7 +12,7 @@ use crate::tracks::{MOVING_MPS, Sample};
 /// Somebody faces whoever is within this of their heading, rad (20°).
 const FACES_RAD: f64 = 0.349_065_850_398_866;
 /// Farther away than this nobody notices a gesture, m.
-const REACH_M: f64 = 8.0;
+const REACH_M: f64 = Gesture::SEEN_M;
 /// Share of the time of a gesture for which it is made facing whomever it is for.
 const SHARE: f64 = 0.6;
 /// It takes so long to turn, s: that time does not count where the gesture lasts longer.
@@ -74,7 +74,13 @@ pub(super) fn gestures_to(signals: &Signals<'_>, human: HumanId, gesture: Gestur
     let ends_s = during.last().map_or(begun_s, |sample| sample.t);
     let from_s = if ends_s - begun_s > 2.0 * TURN_SECS { begun_s + TURN_SECS } else { begun_s };
     let counted: Vec<&&Sample> = during.iter().filter(|sample| sample.t >= from_s).collect();
-    let facing = counted.iter().filter(|me| other.at(me.t).is_some_and(|other| faces(me, &other) >= 0.0)).count();
+    // A person who makes a sign while walking looks ahead.
+    let rules = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map_or(&[][..], |one| &one.rules);
+    let goes = |rule: &Rule| rule.gesture == Some(gesture) && rule.to == Some(to) && !rule.act.stands();
+    let goes = rules.iter().any(goes);
+    let walking = |me: &Sample| goes || me.speed() > MOVING_MPS;
+    let facing =
+        counted.iter().filter(|me| walking(me) || other.at(me.t).is_some_and(|other| faces(me, &other) >= 0.0)).count();
     let share = facing as f64 / counted.len().max(1) as f64;
     let nearest =
         during.iter().filter_map(|me| Some((other.at(me.t)?.at - me.at).norm())).fold(f64::INFINITY, f64::min);

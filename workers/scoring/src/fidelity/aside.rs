@@ -9,8 +9,8 @@ use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::since::{Since, since_act};
 
 /// Somebody who gives way goes so far by themselves, and so much farther off the robot's line, m.
-const GOES_M: f64 = 0.3;
-const OFF_LINE_M: f64 = 0.2;
+const GOES_M: f64 = 0.2;
+const OFF_LINE_M: f64 = 0.15;
 /// The robot passes somebody within this distance, m.
 const PASSES_M: f64 = 3.0;
 /// Somebody has closed up again this near to where they stood, m, so long after the robot has passed at most, s.
@@ -142,8 +142,7 @@ pub(super) fn stays_aside(signals: &Signals<'_>, human: HumanId) -> Finding {
         return Finding::never(-1.0, vec![], text);
     };
     let rules = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map_or(&[][..], |one| &one.rules);
-    let led =
-        rules.iter().any(|rule| !matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::LookAt(_)));
+    let led = rules.iter().any(|rule| !rule.act.stands());
     let stirs_m = moments.iter().map(|moment| (moment.human.at - first.human.at).norm()).fold(0.0, f64::max);
     let text = format!(
         "{human} goes {stirs_m:.2} m (at most {STIRS_M} m{}); the robot comes within {:.2} m at {:.1} s ({CLEAR_M} to {SEEN_M} m asked)",

@@ -415,7 +415,7 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::Order { first, then } => order(found, first, then),
         Predicate::Before { first, then, at_door: false } => setting::before(signals, *first, *then),
         Predicate::Before { first, then, at_door: true } => either(doorway::before(signals, *first, *then)),
-        Predicate::EncounterAt { place, nodes } => setting::encounter_at(signals, *place, nodes),
+        Predicate::EncounterAt { place, nodes, human } => setting::encounter_at(signals, *place, nodes, *human),
         Predicate::Reaches { agent, node, within_m } => setting::reaches(signals, *agent, node, *within_m),
         Predicate::StartsAt { agent, node, within_m } => setting::starts_at(signals, *agent, node, *within_m),
         Predicate::OnTime { human, gap_s } => setting::on_time(signals, *human, *gap_s),

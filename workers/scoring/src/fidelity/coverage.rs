@@ -69,6 +69,7 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::Facing { .. }
         | FactKind::Pace { .. }
         | FactKind::Goal { .. }
+        | FactKind::MeetsAt { .. }
         | FactKind::Before { .. }
         | FactKind::RobotDoes(_)
         | FactKind::Place(_)
@@ -98,6 +99,7 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         | FactKind::Facing { .. }
         | FactKind::Pace { .. }
         | FactKind::Goal { .. }
+        | FactKind::MeetsAt { .. }
         | FactKind::Before { .. }
         | FactKind::RobotDoes(_) => false,
         FactKind::Group { group, members } => members
@@ -160,7 +162,10 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         Predicate::Before { first, then, at_door } => {
             matches!(fact, FactKind::Before { first: one, then: other, at_door: door } if (one, other, door) == (first, then, at_door))
         }
-        Predicate::EncounterAt { place, .. } => matches!(fact, FactKind::Place(asked) if asked == place),
+        Predicate::EncounterAt { place, human: None, .. } => matches!(fact, FactKind::Place(asked) if asked == place),
+        Predicate::EncounterAt { human: Some(human), nodes, .. } => {
+            matches!(fact, FactKind::MeetsAt { human: who, nodes: asked, .. } if (who, asked) == (human, nodes))
+        }
         Predicate::Humans { .. }
         | Predicate::Meets { .. }
         | Predicate::HeadOn { .. }

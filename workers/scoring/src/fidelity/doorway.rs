@@ -1,7 +1,7 @@
 //! Monitors of doors and lines of sight: leaves, enters, stays inside, door opens, hidden until, robot enters last,
 //! robot leaves first, one before another.
 
-use socrates_model::{AgentId, HumanId, Relation};
+use socrates_model::{Action, AgentId, HumanId, NodeId, Relation};
 
 use crate::fidelity::doors::Crossing;
 use crate::fidelity::finding::Finding;
@@ -133,6 +133,9 @@ pub(super) fn door_opens(signals: &Signals<'_>, door: &str, robot_m: [f64; 2]) -
     Ok(if finding.margin >= 0.0 { finding.shifted(room) } else { finding })
 }
 
+/// Largest distance at which a person is noticed, m.
+const NOTICED_M: f64 = 12.0;
+
 /// No line of sight until they are near, or until the door opens.
 pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Result<Finding, Finding> {
     if let Some(found) = absent(signals, human) {
@@ -141,7 +144,9 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
     if signals.field.is_none() {
         return Err(Finding::not_applicable("there is no map to look for lines of sight"));
     }
-    let first = signals.of(human).iter().find(|moment| moment.sight == Some(true));
+    // A person far away down a long way is not noticed.
+    let sees = |moment: &Moment| moment.sight == Some(true) && moment.distance_m <= NOTICED_M;
+    let first = signals.of(human).iter().find(|moment| sees(moment));
     let Some(first) = first else {
         return Ok(Finding::never(
             -1.0,
@@ -155,7 +160,7 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
     // size of its own, so that the margin is that of the distance, or of the time since the door opened.
     let moments = signals.of(human);
     let limit = within_m + SIGHT_SLACK_M;
-    let crisp = |moment: &Moment| if moment.sight == Some(true) { f64::INFINITY } else { f64::NEG_INFINITY };
+    let crisp = |moment: &Moment| if sees(moment) { f64::INFINITY } else { f64::NEG_INFINITY };
     let seen: Signal = moments.iter().map(|moment| (moment.t, crisp(moment))).collect();
     let near: Signal = moments.iter().map(|moment| (moment.t, limit - moment.distance_m)).collect();
     let open_s = opened.as_ref().map_or(f64::INFINITY, |(_, t)| t - OPENING_SECS);
@@ -225,9 +230,11 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Re
     };
     let lines = match humans().find(comes_out) {
         Some(human) => lines_of(signals, "", Some(human))?,
-        None => match humans().next() {
-            Some(human) => destination(signals, human)?,
-            None => lines_of(signals, "", None)?,
+        None => match (humans().next(), humans().find_map(|human| led_to(signals, human))) {
+            _ if [first, then].contains(&AgentId::Robot) => lines_of(signals, "", None)?,
+            (Some(_), Some(node)) => from_node(signals, Some(node))?,
+            (Some(human), None) => destination(signals, human)?,
+            (None, _) => lines_of(signals, "", None)?,
         },
     };
     let name = lines.name();
@@ -253,6 +260,12 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Re
     }
     let &[before, after] = times.as_slice() else { return Err(Finding::not_applicable("there is nobody to compare")) };
     Ok(in_order(before, after, format!("{first} gets through {name} at {before:.1} s, {then} at {after:.1} s")))
+}
+
+/// A node of the place to which a step leads a person.
+fn led_to<'a>(signals: &Signals<'a>, human: HumanId) -> Option<&'a NodeId> {
+    let rules = signals.evidence.proposal?.human(human).map(|human| &human.rules)?;
+    rules.iter().find_map(|rule| if let Action::GoTo { nodes, .. } = &rule.act { nodes.first() } else { None })
 }
 
 /// The robot is out of the door before the first human goes in.

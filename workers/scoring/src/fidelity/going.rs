@@ -20,11 +20,11 @@ const THERE_M: f64 = 1.5;
 const FROM_M: f64 = 1.0;
 /// Farther from their way than this nobody is on it, m.
 const OFF_WAY_M: f64 = 2.0;
-/// Where the run ends first, at least this share of their way from the meeting has to be behind them.
-const SHARE: f64 = 0.5;
+/// Where the run ends first, this share of their way from the meeting has to be behind them.
+pub(super) const SHARE: f64 = 0.5;
 /// And they get on by so much in the last time of the run, m and s.
 const GETS_ON_M: f64 = 0.2;
-const LAST_SECS: f64 = 2.0;
+pub(super) const LAST_SECS: f64 = 2.0;
 
 /// The human walks at a pace, before they do anything else.
 pub(super) fn walks(signals: &Signals<'_>, human: HumanId, mps: f64) -> Finding {
@@ -138,7 +138,7 @@ pub(super) fn gets_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
     let gets_on_m = shortly.map_or(0.0, |before| before - end_m);
     let text = format!(
         "{human} has {met_m:.1} m to go to {list} when the robot is nearest, at {met_s:.1} s, and {end_m:.1} m when the run ends \
-         (at most half), getting on by {gets_on_m:.1} m in the last {LAST_SECS:.0} s"
+         (half of it asked), getting on by {gets_on_m:.1} m in the last {LAST_SECS:.0} s"
     );
-    Finding::by_margin((SHARE * met_m - end_m).min(gets_on_m - GETS_ON_M), vec![met_s, end.t], text)
+    Finding::by_margin((met_m - end_m - SHARE * met_m).min(gets_on_m - GETS_ON_M), vec![met_s, end.t], text)
 }

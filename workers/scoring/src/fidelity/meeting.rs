@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use socrates_model::{HumanId, Point, ordinal};
+use socrates_model::{Clause, HumanId, Point, Predicate, Relation, ordinal};
 
 use crate::fidelity::finding::Finding;
-use crate::fidelity::signals::{Moment, Signals};
+use crate::fidelity::signals::{Moment, Signals, Way};
 use crate::fidelity::windows::{Mark, best, first, held, stretches};
 use crate::tracks::{Sample, Track};
 
@@ -14,7 +14,7 @@ pub(super) const MEET_NODE_M: f64 = 3.0;
 /// Somebody whom the robot never comes nearer to than this has nothing to do with it, m: nobody notices a robot from farther away.
 const PRESENT_M: f64 = 15.0;
 /// Distance from which two who approach are judged, m.
-const APPROACH_M: f64 = 6.0;
+const APPROACH_M: f64 = 10.0;
 /// Distance within which somebody passes or overtakes, m.
 const PASS_M: f64 = 3.0;
 /// How long a direction must be kept to count, s.
@@ -66,6 +66,8 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, nth: u32, within_m: f
         return Finding::never(-1.0, vec![], text);
     }
     let near = meeting.map_or_else(|| signals.encounter(human), |meeting| Some((&meeting.node, meeting.at)));
+    // A person who comes up from behind and stops meets the robot there.
+    let near = near.filter(|_| nth > 1 || !comes_up(signals, human));
     let mark = |moment: &Moment| {
         let both = near.map_or(f64::INFINITY, |(_, at)| {
             MEET_NODE_M - (moment.robot.at - at).norm().max((moment.human.at - at).norm())
@@ -107,6 +109,14 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, nth: u32, within_m: f
     Finding::never(top.margin, vec![nearest.t], text).shifted(-room_s(signals, human, nth, within_m, false))
 }
 
+/// Whether a person comes up with the robot from behind, and no clause has them overtake it.
+fn comes_up(signals: &Signals<'_>, human: HumanId) -> bool {
+    let Some(proposal) = signals.evidence.proposal else { return false };
+    let behind = proposal.human(human).is_some_and(|human| human.relation == Relation::Behind);
+    let overtakes = |clause: &Clause| matches!(clause.predicate, Predicate::Overtakes { human: who } if who == human);
+    behind && !proposal.expected_events.iter().any(overtakes)
+}
+
 /// Step and end of the shifts that are tried, s.
 const SHIFT_STEP_SECS: f64 = 0.25;
 const SHIFT_STEPS: u32 = 40;
@@ -137,6 +147,22 @@ fn room_s(signals: &Signals<'_>, human: HumanId, nth: u32, within_m: f64, meets:
     first.map_or(f64::INFINITY, |shift| f64::from(if meets { shift - 1 } else { shift }) * SHIFT_STEP_SECS)
 }
 
+/// Smallest angle to the robot's heading of a person who comes towards it, degrees: up to 135° they cross its way.
+const HEAD_ON_DEG: f64 = 135.0;
+
+/// Distance from the robot's intended way within which a human is on it, m.
+const ON_WAY_M: f64 = 1.2;
+
+/// Angle between the course of a human and the robot's intended way, rad, where they are on it ahead of the robot: round a corner the
+/// robot's heading does not tell that they come towards it.
+fn along_way_rad(way: &Way, moment: &Moment) -> Option<f64> {
+    let (ahead_m, off_m) = moment.way?;
+    let on = ahead_m > 0.0 && ahead_m <= APPROACH_M && off_m <= ON_WAY_M;
+    let (along, course) =
+        way.direction(&moment.human.at).filter(|_| on).zip(moment.human.velocity.try_normalize(1e-9))?;
+    Some(libm::acos(along.dot(&course).clamp(-1.0, 1.0)))
+}
+
 /// The human comes towards the robot as they approach.
 pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
     if let Some(found) = absent(signals, human) {
@@ -150,11 +176,14 @@ pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
     };
     // A stop in the middle of the approach must not hide it: every stretch up to the closest point counts.
     let approach = moments.iter().filter(|moment| moment.t >= start.t && moment.t <= nearest.t.max(start.t + 1.0));
-    let limit = 150.0_f64.to_radians();
+    let limit = HEAD_ON_DEG.to_radians();
+    let along_rad = |moment: &Moment| signals.way.as_ref().and_then(|way| along_way_rad(way, moment));
+    let course_rad = |moment: &Moment| along_rad(moment).map_or(moment.course_rad, |rad| rad.max(moment.course_rad));
     let parts = |moment: &Moment| {
-        let ahead = if moment.distance_m > 1e-6 { moment.ahead_m / moment.distance_m } else { 1.0 };
+        let by_heading = if moment.distance_m > 1e-6 { moment.ahead_m / moment.distance_m } else { 1.0 };
+        let ahead = if along_rad(moment).is_some_and(|rad| rad >= limit) { 1.0 } else { by_heading };
         [
-            (moment.course_rad - limit, "is not head on"),
+            (course_rad(moment) - limit, "is not head on"),
             ((moment.human.speed() - WALKING_MPS) * 2.0, "hardly walks"),
             (moment.closing_mps, "comes no nearer"),
             (ahead - 0.5, "is not ahead of the robot"),
@@ -173,12 +202,12 @@ pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
     };
     let at = found.first_s.unwrap_or(found.best_s);
     let then = moments.iter().find(|moment| moment.t >= at);
-    let angle = then.map_or(0.0, |moment| moment.course_rad.to_degrees());
+    let angle = then.map_or(0.0, |moment| course_rad(moment).to_degrees());
     // The moment is the best that there was; where that is not good enough, what it lacks is said.
     let lacks = then.filter(|_| found.margin < 0.0).map_or("", |moment| worst(moment).1);
     let lacks = if lacks.is_empty() { String::new() } else { format!(", but {lacks} for {KEPT_SECS:.1} s on end") };
     let text = format!(
-        "{human} at {angle:.0}° to the robot's heading at {at:.1} s (150° to 180° asked){lacks}, closest {:.2} m at {:.1} s",
+        "{human} at {angle:.0}° to the robot's heading or way at {at:.1} s ({HEAD_ON_DEG:.0}° to 180° asked){lacks}, closest {:.2} m at {:.1} s",
         nearest.distance_m, nearest.t
     );
     let longest = stretches(marks, 0.0).into_iter().map(|(from, to)| to - from).fold(0.0, f64::max);

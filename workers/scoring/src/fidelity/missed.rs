@@ -74,12 +74,13 @@ fn instead(signals: &Signals<'_>, when: &RobotWhen) -> String {
             let longest_s = all().map(|moments| longest(moments, blocked)).fold(0.0, f64::max);
             format!("{longest_s:.1} s at the longest: where it finds room beside somebody it passes")
         }
-        RobotWhen::HumanNear(_) => {
+        RobotWhen::HumanNear(_) | RobotWhen::Near(..) => {
             let nearest_m = least(signals.moments.keys().map(|human| signals.nearest_m(*human)));
             format!("{nearest_m:.1} m at the nearest")
         }
         RobotWhen::HumanSays(gesture) => format!("nobody says {gesture} within 10 m"),
         RobotWhen::AtEncounter(human) => format!("it does not come to where it meets {human}"),
+        RobotWhen::Did(number) => format!("line {number} of its script is not over before the run is"),
         RobotWhen::Start | RobotWhen::AfterSecs(_) => "the run ends before".to_owned(),
     }
 }

@@ -86,13 +86,18 @@ fn trigger_mark(
 }
 
 fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) -> Vec<Mark> {
+    marks_from(signals, human, when, (f64::NEG_INFINITY, slack_m))
+}
+
+/// Margins of triggers from a time on; the nearest distance of the robot counts from then.
+fn marks_from(signals: &Signals<'_>, human: HumanId, when: &[Trigger], (from_s, slack_m): (f64, f64)) -> Vec<Mark> {
     // The nearest that the robot has been by then.
     let mut nearest_m = f64::INFINITY;
     let mark = |moment: &Moment| {
         nearest_m = nearest_m.min(moment.distance_m);
         trigger_mark(signals, human, when, (moment, nearest_m), slack_m)
     };
-    signals.of(human).iter().map(mark).collect()
+    signals.of(human).iter().filter(|moment| moment.t >= from_s).map(mark).collect()
 }
 
 /// The finding where triggers never held together and were nearest to it at a moment: which of them did not, and what was true instead.
@@ -128,7 +133,7 @@ pub(super) fn first_reason(signals: &Signals<'_>, human: HumanId, when: &[Trigge
 
 /// When all triggers first hold from a time on.
 pub(super) fn first_since(signals: &Signals<'_>, human: HumanId, when: &[Trigger], since_s: f64) -> Option<f64> {
-    first(marks(signals, human, when, 0.0).into_iter().filter(|mark| mark.t >= since_s)).map(|mark| mark.t)
+    first(marks_from(signals, human, when, (since_s, 0.0))).map(|mark| mark.t)
 }
 
 /// Whether all triggers hold at a moment of a human.

@@ -13,10 +13,6 @@ use crate::fidelity::windows::{Mark, best, first, stretches};
 use crate::fidelity::{company, doorway, meeting};
 use crate::tracks::{MOVING_MPS, Sample, Track};
 
-/// Within this distance of an encounter the robot is at it, m.
-const AT_ENCOUNTER_M: f64 = 1.0;
-/// The robot takes no gesture that is made farther from it than this, m.
-const HEARS_M: f64 = 10.0;
 /// A gesture that is shown for less was not made, s.
 const SHOWN_SECS: f64 = 0.3;
 /// Share of its time for which the robot has to stand, and the time that it takes to come to a stand, s, which does not count.
@@ -33,7 +29,7 @@ const GAP_M: [f64; 2] = [0.5, 3.5];
 /// A follower may be so much farther behind than the robot allows for, m, and for so long, s, while it stops and they catch up.
 const SLACK_M: f64 = 1.5;
 const SLACK_SECS: f64 = 3.0;
-/// So many follow within the usual distance, and each one more so much farther behind, m: they go one behind the other.
+/// Number of followers within the usual distance, and how much farther behind each one more is, m: they go one behind the other.
 const FEW_FOLLOW: usize = 3;
 const QUEUE_M: f64 = 0.5;
 
@@ -113,6 +109,7 @@ fn is_for_others(signals: &Signals<'_>, human: HumanId, said: Gesture, t: f64) -
 /// How far a reason holds at each sample of the robot from a time on; distances and times are widened by `slack`.
 fn marks(signals: &Signals<'_>, robot: &Track, when: &RobotWhen, (from_s, slack): (f64, f64)) -> Vec<Mark> {
     let people = seen(signals, robot.samples.len());
+    let over_s = if let RobotWhen::Did(number) = when { over(signals, robot, *number) } else { None };
     let mut blocked_s = 0.0;
     let mut last_s: Option<f64> = None;
     let mut mark = |(sample, people): (&Sample, &Vec<(HumanId, &Moment)>)| {
@@ -131,22 +128,50 @@ fn marks(signals: &Signals<'_>, robot: &Track, when: &RobotWhen, (from_s, slack)
                 let near = people.iter().map(|(_, moment)| reach_m + slack - moment.distance_m);
                 near.fold(-1e3, f64::max)
             }
+            RobotWhen::Near(human, reach_m) => {
+                let own = people.iter().find(|(id, _)| id == human);
+                own.map_or(-1e3, |(_, moment)| reach_m + slack - moment.distance_m)
+            }
             RobotWhen::HumanSays(gesture) => {
                 let says = |(id, moment): &(HumanId, &Moment)| {
                     moment.human.gesture == Some(*gesture)
-                        && moment.distance_m < HEARS_M + slack
+                        && moment.distance_m < Gesture::SEEN_M + slack
                         && !is_for_others(signals, *id, *gesture, moment.t)
                 };
                 if people.iter().any(says) { 1.0 } else { -1.0 }
             }
             RobotWhen::AtEncounter(human) => {
-                signals.encounter(*human).map_or(-1e3, |(_, at)| AT_ENCOUNTER_M + slack - (sample.at - at).norm())
+                let own = people.iter().find(|(id, _)| id == human).map(|(_, moment)| moment.human.at);
+                signals.encounter(*human).map_or(-1e3, |(_, at)| {
+                    let apart = |from: &Point| own.map_or(f64::INFINITY, |own| (own - from).norm());
+                    RobotWhen::at_encounter_m((sample.at - at).norm(), apart(&sample.at), apart(&at)) + slack
+                })
             }
             RobotWhen::AfterSecs(secs) => sample.t + slack - secs,
+            RobotWhen::Did(_) => over_s.map_or(-1e3, |over_s| sample.t + slack - over_s),
         };
         Mark::new(sample.t, margin)
     };
     robot.samples.iter().zip(&people).filter(|(sample, _)| sample.there && sample.t >= from_s).map(&mut mark).collect()
+}
+
+/// End of a line of the script, s, by its beginning and its deed; none where it does not end.
+fn over(signals: &Signals<'_>, robot: &Track, number: u32) -> Option<f64> {
+    let script = signals.evidence.proposal.map_or(&[][..], |proposal| &proposal.robot.script);
+    let place = usize::try_from(number).ok()?.checked_sub(1)?;
+    let line = script.get(place)?;
+    // An order in a circle has no end.
+    if matches!(line.when, RobotWhen::Did(before) if before >= number) {
+        return None;
+    }
+    let begun_s = comes(signals, robot, &line.when, f64::NEG_INFINITY).ok()?.t.max(0.0);
+    let longest_s = begun_s + line.act.longest_s();
+    let ends_s = if let RobotDo::HoldUntil(until) = &line.act {
+        comes(signals, robot, until, begun_s).map_or(longest_s, |reason| reason.t.min(longest_s))
+    } else {
+        longest_s
+    };
+    (ends_s <= signals.end_s()).then_some(ends_s)
 }
 
 /// When a reason first holds from a time on; where it never does, the moment that comes nearest.
@@ -198,22 +223,41 @@ fn stands(robot: &Track) -> Vec<(f64, f64)> {
     stretches(robot.present().map(|sample| Mark::new(sample.t, MOVING_MPS - sample.speed())), 0.0)
 }
 
+/// Times in which other lines of the script have the robot stand, s.
+fn held_by_others(signals: &Signals<'_>, robot: &Track, act: &RobotDo) -> Vec<(f64, f64)> {
+    let script = signals.evidence.proposal.map_or(&[][..], |proposal| &proposal.robot.script);
+    let stands = |line: &&RobotRule| matches!(line.act, RobotDo::Hold(_) | RobotDo::HoldUntil(_)) && line.act != *act;
+    let span = |(number, line): (u32, &RobotRule)| {
+        let begun_s = comes(signals, robot, &line.when, f64::NEG_INFINITY).ok()?.loose_s;
+        Some((begun_s, over(signals, robot, number).unwrap_or_else(|| signals.end_s())))
+    };
+    (1..).zip(script).filter(|(_, line)| stands(line)).filter_map(span).collect()
+}
+
+/// Whether one of some times goes on to a time, s, or ended shortly before it.
+fn lasts_to(spans: &[(f64, f64)], t: f64) -> bool {
+    spans.iter().any(|(from, to)| *from <= t + EARLY_SECS && *to >= t - GOES_SECS)
+}
+
 /// When the robot comes to a stand for a reason, and where; else the finding that it does not. It has moved shortly before, unless it
 /// waits from the start.
 fn comes_to_stand(
     robot: &Track,
-    when: &RobotWhen,
+    (when, others): (&RobotWhen, &[(f64, f64)]),
     reason: Reason,
     within_s: f64,
 ) -> Result<(f64, Point, Finding), Finding> {
-    // Whoever is blocked has stood for as long.
+    // A blocked robot has stood for as long.
     let before_s = if let RobotWhen::Blocked(secs) = when { MOVED_SECS + secs } else { MOVED_SECS };
     let found = stands(robot).into_iter().find(|(_, to)| *to > reason.loose_s);
     let Some(((from, _), place)) = found.and_then(|span| Some((span, robot.at(span.0)?.at))) else {
         return Err(Finding::fails(-within_s, vec![reason.t], "the robot never stands then"));
     };
     let moved = |sample: &&Sample| sample.t <= reason.t && sample.t >= reason.t - before_s;
-    if *when != RobotWhen::Start && !robot.present().filter(moved).any(|sample| sample.speed() > MOVING_MPS) {
+    if *when != RobotWhen::Start
+        && !lasts_to(others, reason.t)
+        && !robot.present().filter(moved).any(|sample| sample.speed() > MOVING_MPS)
+    {
         let text = format!("the robot has stood from {from:.1} s, for {before_s:.0} s and more");
         return Err(Finding::fails(from - reason.t, vec![from, reason.t], text));
     }
@@ -249,7 +293,8 @@ fn holds(
     reason: Reason,
     within_s: f64,
 ) -> Finding {
-    let (from, place, found) = match comes_to_stand(robot, when, reason, within_s) {
+    let others = held_by_others(signals, robot, &RobotDo::Hold(secs));
+    let (from, place, found) = match comes_to_stand(robot, (when, &others), reason, within_s) {
         Ok(found) => found,
         Err(found) => return found,
     };
@@ -276,7 +321,8 @@ fn holds_until(
     reason: Reason,
     within_s: f64,
 ) -> Finding {
-    let (from, place, found) = match comes_to_stand(robot, when, reason, within_s) {
+    let others = held_by_others(signals, robot, &RobotDo::HoldUntil(until.clone()));
+    let (from, place, found) = match comes_to_stand(robot, (when, &others), reason, within_s) {
         Ok(found) => found,
         Err(found) => return found,
     };
@@ -306,7 +352,10 @@ fn holds_until(
         return and_goes_on(Finding { evidence: text, ..found }, went_m);
     };
     let text = format!("{text}, and goes at {:.1} s (at most {GOES_SECS:.1} s later)", goes.t);
-    let ended = timely((goes.t - over.t).max(0.0), GOES_SECS, vec![from, reason.t, goes.t], text);
+    // Another line may have it stand on.
+    let held_s = others.iter().filter(|(from, to)| *from <= over.t + GOES_SECS && *to > over.t);
+    let free_s = held_s.map(|(_, to)| *to).fold(over.t, f64::max);
+    let ended = timely((goes.t - free_s).max(0.0), GOES_SECS, vec![from, reason.t, goes.t], text);
     if ended.margin < 0.0 { ended } else { and_goes_on(ended, went_m) }
 }
 

@@ -11,8 +11,10 @@ use crate::tracks::{MOVING_MPS, Sample, Track};
 
 /// Who is there less than this before another is there at the same time, s.
 pub(super) const BEFORE_S: f64 = 0.3;
-/// An encounter is at its place where human, robot and node are once this near to each other, m.
+/// An encounter is at its place where the human is this near to the node, m.
 const PLACE_M: f64 = 4.0;
+/// Additional distance of the robot from the human, m.
+const BEFORE_M: f64 = 2.0;
 /// Role of somebody who walks as recorded, as the simulation writes it.
 const RECORDED: &str = "recorded";
 
@@ -40,8 +42,8 @@ pub(super) fn humans(signals: &Signals<'_>, count: u32) -> Finding {
     }
 }
 
-/// An encounter lies on one of the named nodes, or on a place of this class where none is named.
-pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[NodeId]) -> Finding {
+/// An encounter, that of one human where they are given, lies on one of the named nodes, or on a place of this class where none is named.
+pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[NodeId], of: Option<HumanId>) -> Finding {
     let (Some(location), Some(paths)) = (signals.evidence.location, signals.evidence.paths) else {
         return Finding::not_applicable("there is no map or no paths to tell where the encounters are");
     };
@@ -59,6 +61,7 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[No
     let here: Vec<(HumanId, &NodeId)> = paths
         .encounters
         .iter()
+        .filter(|encounter| of.is_none_or(|human| human == encounter.human))
         .filter(|encounter| lies(&encounter.node) || from_inside(encounter.human))
         .map(|encounter| (encounter.human, &encounter.node))
         .collect();
@@ -91,8 +94,8 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[No
 /// How far the human, the robot and the node of their encounter are from each other when they are nearest, m, and when that is, s.
 fn together(signals: &Signals<'_>, human: HumanId, node: &NodeId) -> Option<(f64, f64)> {
     let at = signals.node(node)?;
-    let apart =
-        |moment: &Moment| (moment.robot.at - at).norm().max((moment.human.at - at).norm()).max(moment.distance_m);
+    // The place is where the human is; the robot may stand before it.
+    let apart = |moment: &Moment| (moment.human.at - at).norm().max(moment.distance_m - BEFORE_M);
     signals.of(human).iter().map(|moment| (apart(moment), moment.t)).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 

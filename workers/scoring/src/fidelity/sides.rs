@@ -1,6 +1,6 @@
 //! The monitor of a side: from which side of the robot's way somebody comes, on which they stand, on which they walk.
 
-use socrates_model::{HumanId, Relation, Side, Vector};
+use socrates_model::{HumanId, Polyline, Relation, Side, Vector};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
@@ -50,7 +50,10 @@ pub(super) fn on_side(signals: &Signals<'_>, human: HumanId, side: Side) -> Find
     match relation {
         Some(Relation::Crossing) => comes(&drive, moments, nearest, (human, side, false)),
         Some(Relation::Leaving) => comes(&drive, moments, nearest, (human, side, true)),
-        Some(Relation::Static | Relation::Aside) | None => stands(&drive, nearest, (human, side)),
+        // A robot that goes round them on either side leaves them on that side of its way.
+        Some(Relation::Static | Relation::Aside) | None => {
+            stands(Drive::planned(signals).as_ref().unwrap_or(&drive), nearest, (human, side))
+        }
         Some(Relation::Staying) => Finding::fails(-1.0, vec![], format!("{human} stays inside, on no side")),
         Some(Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Abreast) => {
             walks(&drive, moments, (human, side, relation == Some(Relation::Ahead)))
@@ -75,6 +78,15 @@ impl Drive {
             }
         }
         Self { points }
+    }
+
+    /// The way that the robot was to go.
+    fn planned(signals: &Signals<'_>) -> Option<Self> {
+        let (paths, location) = (signals.evidence.paths?, signals.evidence.location?);
+        let way = Polyline::new(&location.graph.polyline(&paths.robot));
+        let marks = (0..).map(|step| f64::from(step) * STEP_M).take_while(|s| *s <= way.length_m());
+        let points: Vec<_> = marks.map(|s| (way.point(s), s)).collect();
+        (points.len() > 1).then_some(Self { points })
     }
 
     fn moves(&self) -> bool {

@@ -90,6 +90,8 @@ pub struct Signals<'a> {
     pub enclosures: Option<Arc<Enclosures>>,
     /// Distance to walls; `None` without a map.
     pub field: Option<Arc<DistanceField>>,
+    /// The robot's intended way; `None` without a map or paths.
+    pub(super) way: Option<Way>,
     /// Encounters of every human who has several, one after the other.
     pub(super) meetings: BTreeMap<HumanId, Vec<Meeting>>,
 }
@@ -159,6 +161,7 @@ impl<'a> Signals<'a> {
             ground,
             enclosures,
             field,
+            way,
             meetings,
         }
     }
@@ -283,5 +286,13 @@ impl Way {
                 (s + (nearest - a).norm(), off)
             })
             .min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Unit vector along the way at the point of it nearest to a position.
+    #[must_use]
+    pub(super) fn direction(&self, point: &Point) -> Option<socrates_model::Vector> {
+        let off_m = |(_, a, b): &&(f64, Point, Point)| nearest_on_segment(point, a, b).0;
+        let (_, a, b) = self.pieces.iter().min_by(|one, other| off_m(one).total_cmp(&off_m(other)))?;
+        (b - a).try_normalize(1e-9)
     }
 }

@@ -14,7 +14,7 @@ use crate::tracks::MOVING_MPS;
 const SHARE: f64 = 0.6;
 /// How long after what ends it a step may still be done, s.
 const END_SECS: f64 = 2.0;
-/// Somebody comes to a stand, or turns, in so much time, s: it does not count where a step lasts longer.
+/// Time in which a person comes to a stand, or turns about, s; of a short step, half of its length. It does not count.
 const SETTLE_SECS: f64 = 1.0;
 /// A longer time between two samples tells nothing of what was done in it, s.
 const LONGEST_STEP_SECS: f64 = 0.3;
@@ -174,6 +174,7 @@ fn does(signals: &Signals<'_>, human: HumanId, rule: &Rule, reason_s: f64) -> Re
         return Err(early);
     }
     match after {
+        Some(_) if stands && goes_on() => Ok(reason_s),
         Some(t) => Ok(t),
         None if (by_other || stands) && goes_on() => Ok(reason_s),
         None => Err(early.filter(|_| has_onset(&rule.act) && !by_other).unwrap_or(f64::INFINITY)),
@@ -203,7 +204,7 @@ fn lasts(signals: &Signals<'_>, human: HumanId, rule: &Rule, begun_s: f64) -> Re
     }
     let by_time_s = rule.for_s.map_or(f64::INFINITY, |secs| begun_s + secs);
     let length_s = over_s - begun_s;
-    let settle_s = if length_s > 2.0 * SETTLE_SECS { SETTLE_SECS } else { 0.0 };
+    let settle_s = SETTLE_SECS.min(length_s / 2.0);
     let asked_s = (SHARE * (length_s - settle_s)).min(most_s(&rule.act));
     let kept_s = kept_s(signals, human, rule, (begun_s, over_s));
     if kept_s + 2.0 * MOMENT_SECS < asked_s {

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use socrates_model::{Action, HumanId, NodeId, Point, Rule};
 
 use crate::fidelity::finding::Finding;
+use crate::fidelity::going::{LAST_SECS, SHARE};
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
 use crate::fidelity::since::{since, since_act};
@@ -131,6 +132,13 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
         nearest.t
     );
     let t = arrived.map_or(nearest.t, |sample| sample.t);
+    // People on the way to it as the run ends count.
+    let ends_s = track.samples.iter().rfind(there).map_or(begun_s, |sample| sample.t);
+    let came_m = from(first) - from(nearest);
+    let on_the_way = nearest.t >= ends_s - LAST_SECS && came_m >= SHARE * from(first);
+    if arrived.is_none() && on_the_way {
+        return since.told(Finding::holds(came_m, vec![t, begun_s], format!("{text}, on the way as the run ends")));
+    }
     since.told(Finding::by_margin(THERE_M - from(nearest), vec![t, begun_s], text))
 }
 

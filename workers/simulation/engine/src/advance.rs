@@ -15,13 +15,13 @@ use crate::robot::Robot;
 use crate::run::Engine;
 use crate::walk::{self, Pairs, Steps, Walker};
 
-/// People whose forces are reckoned at once: enough to fill the lanes, few enough for the nearest cache.
+/// People whose forces are computed at once: enough to fill the lanes, few enough for the nearest cache.
 const AT_ONCE: usize = 32;
 
 /// People line up at the end of their way over so much of it, m; whose ends are nearer to each other than this share it, m.
 const LINE_M: f64 = 4.0;
 const SAME_END_M: f64 = 1.0;
-/// Somebody who stands in that line moves slower than this, m/s, and has somebody this near before them, m.
+/// A person who stands in that line moves slower than this, m/s, and has another this near ahead of them, m.
 const LINED_UP_MPS: f64 = 0.12;
 const NEXT_M: f64 = 1.15;
 /// Between people of a group who go one behind the other, m.
@@ -30,7 +30,7 @@ const IN_LINE_M: f64 = 0.8;
 /// People nearer than this before the robot are before it together, m.
 const BEFORE_M: f64 = 8.0;
 
-/// Lists that every tick fills anew; kept, so that no tick makes any.
+/// Lists that every tick fills again; kept, so that no tick makes any.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
     walker: Walker,
@@ -141,7 +141,7 @@ impl Engine {
         (self.desk.wants, self.desk.bodies) = (wants, bodies);
     }
 
-    /// Whoever stands behind others who have come to the same end has come to it too: there is no room nearer to it.
+    /// A person who stands behind others who have come to the same end has come to it too: there is no room nearer to it.
     fn line_up(&mut self) {
         for place in 0..self.humans.len() {
             let (before, rest) = self.humans.split_at_mut(place);
@@ -164,7 +164,7 @@ impl Engine {
     /// Speed of each human on its way: rendezvous, closed doors ahead, and the pace of walking groups.
     fn doors_and_paces(&mut self, now_s: f64) -> Vec<f64> {
         let mut paces = Vec::with_capacity(self.humans.len());
-        // Whoever meets nobody waits for nobody.
+        // A person without a meeting waits for no robot.
         let meets = self.humans.iter().any(|human| !human.meetings.is_empty());
         let nearest = self.robot.as_ref().filter(|_| meets).and_then(|robot| before(robot, &self.humans));
         let coming_out: Vec<usize> = self

@@ -24,6 +24,9 @@ const GATE_M: f64 = 1.0;
 /// The event that the rendezvous controller raises: somebody is about to go through.
 pub(crate) const ENCOUNTER: &str = "encounter";
 
+/// A call is for the door whose middle is nearer than this, m.
+const CALL_M: f64 = 0.1;
+
 /// Names of all events that can open a door of this location (`opens = { on_event = "…" }`).
 ///
 /// - `encounter`: somebody whose way leads through the door is about to go through;
@@ -56,6 +59,8 @@ pub(crate) struct Passer {
 pub(crate) struct Raised {
     pub(crate) name: String,
     pub(crate) at: Option<Point>,
+    /// Whether the door at the spot opens for it that else opens for the robot: an elevator that was called.
+    pub(crate) calls: bool,
 }
 
 impl Raised {
@@ -76,7 +81,7 @@ impl Raised {
             | EventKind::Stuck { .. }
             | EventKind::End { .. } => return None,
         };
-        Some(Self { name, at })
+        Some(Self { name, at, calls: false })
     }
 }
 
@@ -173,7 +178,9 @@ impl LiveDoor {
             }
             DoorOpens::Near(reach) => passers.iter().any(|passer| comes(passer, *reach)),
             DoorOpens::RobotNear(reach) => {
-                passers.iter().any(|passer| passer.robot && (passer.at - middle).norm() <= *reach)
+                let called = |event: &Raised| event.calls && event.at.is_some_and(|at| (at - middle).norm() < CALL_M);
+                let robot = |passer: &Passer| passer.robot && (passer.at - middle).norm() <= *reach;
+                passers.iter().any(robot) || raised.iter().any(called)
             }
             // What happens at a spot opens the doors there; others that wait for the same name stay shut.
             DoorOpens::OnEvent(name) => raised
@@ -229,7 +236,9 @@ mod tests {
     #[test]
     fn an_event_opens_the_doors_near_it_and_one_without_a_spot_opens_all() {
         let mut doors = doors(DoorOpens::OnEvent("PROCEED".into()));
-        let event = |name: &str, at: Option<f64>| [Raised { name: name.into(), at: at.map(|x| Point::new(x, 0.)) }];
+        let event = |name: &str, at: Option<f64>| {
+            [Raised { name: name.into(), at: at.map(|x| Point::new(x, 0.)), calls: false }]
+        };
         assert!(doors.step(0.0, 0.01, &[], &event("WAIT", Some(1.0))).is_empty());
         assert!(doors.step(0.0, 0.01, &[], &event("PROCEED", Some(6.0))).is_empty());
         assert_eq!(doors.step(0.0, 0.01, &[], &event("PROCEED", Some(2.0))).len(), 1);

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use socrates_model::rule::RobotWhen;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
     AgentId, Command, Cues, EventKind, Gesture, HumanId, Observation, Point, Pose, RobotDriver, SeenDoor, SeenPerson,
@@ -10,7 +11,7 @@ use socrates_model::{
 
 use crate::doors::{Doors, LiveDoor};
 use crate::floor::Floor;
-use crate::human::Human;
+use crate::human::{Human, Meeting};
 use crate::lidar::{self, Disc};
 use crate::recorder::Recorder;
 use crate::robot::Robot;
@@ -152,7 +153,13 @@ impl Engine {
         let at_encounter: Vec<HumanId> = self
             .humans
             .iter()
-            .filter(|human| human.meeting().is_some_and(|meeting| (meeting.at - at).norm() < 1.0))
+            .filter(|human| {
+                let apart = |meeting: &Meeting| {
+                    let (node, own) = ((meeting.at - at).norm(), (meeting.at - human.at).norm());
+                    RobotWhen::at_encounter_m(node, (human.at - at).norm(), own)
+                };
+                human.meeting().is_some_and(|meeting| apart(meeting) > 0.0)
+            })
             .map(|human| human.id)
             .collect();
         let mut gesture =

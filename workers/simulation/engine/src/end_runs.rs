@@ -18,6 +18,24 @@ fn track(recording: &Recording, agent: AgentId) -> Vec<AgentState> {
 }
 
 #[test]
+fn a_robot_turns_back_before_a_person_who_stands_at_a_dead_end_of_its_way() {
+    let nodes = [("a", 2.0, 4.0), ("b", 10.0, 4.0), ("end", 10.0, 12.0), ("c", 18.0, 4.0)];
+    let place = location(
+        carve(20.0, 14.0, &[(1.0, 3.0, 19.0, 5.0), (9.0, 3.0, 11.0, 13.0)]),
+        &nodes,
+        &[("a", "b"), ("b", "end"), ("b", "c")],
+    );
+    let robot = ["a", "b", "end", "b", "c"];
+    let made = setup(place.clone(), &robot, &[Cast(Relation::Static, &["end"], vec![])], &[(1, "end")]);
+    let (way, marks) = crate::intended_way(&made);
+    let farthest = way.points().iter().map(|point| point.y).fold(0.0, f64::max);
+    assert!((farthest - 10.8).abs() < 1e-9, "{farthest}");
+    assert!((way.length_m() - (32.0 - 2.0 * 1.2)).abs() < 1e-9 && (marks[2].1 - 14.8).abs() < 1e-9, "{marks:?}");
+    let alone = setup(place, &robot, &[Cast(Relation::Static, &["c"], vec![])], &[(1, "c")]);
+    assert!((crate::intended_way(&alone).0.length_m() - 32.0).abs() < 1e-9);
+}
+
+#[test]
 fn a_robot_that_goes_another_way_than_the_intended_one_arrives_and_is_not_stuck() {
     let made = setup(location(hall(28.0, 16.0), &NODES, &EDGES), &["a", "b", "c", "d"], &[], &[]);
     // Straight along the lower wall, where the intended way leads round by the upper one.

@@ -17,7 +17,8 @@ const ELSEWHERE_M: f64 = 3.0;
 const STUCK_END_S: f64 = 45.0;
 /// After the robot's arrival the run goes on for at least so long, s.
 const AFTER_ARRIVAL_S: f64 = 5.0;
-/// After the last encounter the run goes on until everybody is done, at most so long, s.
+/// After the last encounter the run goes on until everybody is done, at most so long, s; longer only for people on the way to a stated
+/// place.
 const AFTER_ENCOUNTER_S: f64 = 8.0;
 /// After the robot's arrival people who are still under way get at most so long, s.
 const PEOPLE_S: f64 = 20.0;
@@ -32,6 +33,8 @@ pub(crate) struct Standing {
     pub(crate) robot_at: Option<Point>,
     pub(crate) arrived: bool,
     pub(crate) people_done: bool,
+    /// Whether a human is still on the way to a place that is stated for them.
+    pub(crate) under_way: bool,
     pub(crate) met: usize,
     pub(crate) to_meet: usize,
     /// Progress of each human and whether it should be moving but hardly does.
@@ -117,7 +120,7 @@ impl Ending {
         if since < AFTER_ARRIVAL_S {
             return false;
         }
-        let all_met = self.met >= standing.to_meet && now - self.last_met_s >= AFTER_ENCOUNTER_S;
+        let all_met = self.met >= standing.to_meet && now - self.last_met_s >= AFTER_ENCOUNTER_S && !standing.under_way;
         standing.people_done || all_met || since >= PEOPLE_S
     }
 

@@ -106,6 +106,8 @@ pub(crate) struct Human {
     pub(crate) home: Point,
     /// How fast it walks at most to be in time, m/s.
     pub(crate) fastest_mps: f64,
+    /// Whether the place at the end of its way is a stated one.
+    pub(crate) bound: bool,
     /// Whether it makes room for the robot: then it stands in its way until then.
     pub(crate) opens: bool,
     /// Where it stands while it stands.
@@ -116,7 +118,7 @@ pub(crate) struct Human {
     pub(crate) jammed_s: f64,
     /// Until when it lets the robot through, s.
     pub(crate) yields_until_s: f64,
-    /// Who is in its way, face to face.
+    /// The person in its way, face to face.
     pub(crate) facing: Facing,
     /// How near the robot has been to it, m.
     pub(crate) nearest_robot_m: f64,

@@ -81,4 +81,5 @@ pub use models::HumanModel;
 pub use recorder::Recorder;
 pub use run::Engine;
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};
+pub use start::intended_way;
 pub use view::in_field_of_view;

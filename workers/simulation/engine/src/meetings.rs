@@ -46,7 +46,7 @@ pub(crate) fn of(
             let stops_s = stops_s(proposal, robot_mps);
             match (ordered_s(setup, proposal.id), stops_s) {
                 (None, stops_s) => usual_s + stops_s,
-                // Whoever lets the robot go first stands short of the place meanwhile.
+                // A person who lets the robot go first stands short of the place meanwhile.
                 (Some(order_s), stops_s) if order_s < 0.0 && stops_s > 0.0 => stops_s - SHORT_M / pace(proposal),
                 (Some(order_s), _) => order_s,
             }
@@ -77,7 +77,7 @@ fn pace(proposal: &HumanProposal) -> f64 {
 fn stops_s(proposal: &HumanProposal, robot_mps: f64) -> f64 {
     let mut steps: Vec<_> = proposal.rules.iter().filter(|rule| rule.step.is_some()).collect();
     steps.sort_by_key(|rule| rule.step);
-    let stands = |rule: &&&Rule| matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::LookAt(_));
+    let stands = |rule: &&&Rule| rule.act.stands();
     match proposal.relation {
         Relation::Ahead => return nears_s(steps.first().copied(), robot_mps),
         // To get past the robot they have to be there well before it, where they stop.
@@ -140,7 +140,9 @@ pub(crate) fn is_awaited(setup: &Setup, proposal: &HumanProposal) -> bool {
         RobotWhen::Start
         | RobotWhen::Blocked(_)
         | RobotWhen::HumanNear(_)
+        | RobotWhen::Near(..)
         | RobotWhen::AtEncounter(_)
+        | RobotWhen::Did(_)
         | RobotWhen::AfterSecs(_) => false,
     };
     let by_robot =

@@ -27,10 +27,10 @@ const BEHIND_M: f64 = 2.2;
 const LANE_M: f64 = 0.75;
 const ABREAST: usize = 3;
 
-/// Whoever finds no place in the rings round its node looks on from step to step of this length, m, at most so many steps far.
+/// A person without a place in the rings round its node looks on from step to step of this length, m, at most so many steps far.
 const WALK_STEP_M: f64 = 0.3;
 const WALK_STEPS: i32 = 27;
-/// Whoever stands for good keeps so far from the robot's goal, m: both bodies and a hand's breadth.
+/// Least distance from the robot's goal of a person who stands for good, m: both bodies and a hand's breadth.
 const GOAL_FREE_M: f64 = 0.75;
 
 /// Places everybody, and gives back who found no free place. `lines` are standing groups that wait in line; `doors` gives the door line and depth side for humans who start behind a door.
@@ -125,7 +125,7 @@ fn spot(
             let mut cost = (at - wished).norm();
             if let Some(door) = door {
                 let depth = (at - door).norm();
-                // Whoever leaves stands before whoever stays.
+                // People who leave stand before those who stay.
                 cost = if human.relation == Relation::Staying { cost - 1.5 * depth } else { cost + 0.6 * depth };
                 cost += unmet(human, &at);
                 if depth < 0.7 || cost.is_nan() {
@@ -159,7 +159,7 @@ fn spot(
     Some((at, facing(human, &at, door)))
 }
 
-/// Whoever stays inside stands at most so far from where the robot comes to them, m, and what each meter more costs, m.
+/// People who stay inside stand at most so far from where the robot comes to them, m, and what each meter more costs, m.
 const MET_M: f64 = 2.6;
 const UNMET_PER_M: f64 = 6.0;
 
@@ -304,8 +304,13 @@ fn stand(
         gathering::at_end(&home, route).and_then(|ends| gathering::rim(&home, members.len(), ring, ends, &around))
     };
     // Where there is no room for them together each finds a place alone.
-    let beside = first.side.zip(route).map(|(side, route)| Beside { side, route });
-    let places = places.or_else(|| formation(&home, (members.len(), beside, first.opens), body, floor, route, taken));
+    let sides: Vec<Option<Side>> =
+        members.iter().map(|place| humans.get(*place).and_then(|human| human.side)).collect();
+    // People on both sides have the robot's way between them.
+    let mixed = sides.iter().flatten().any(|side| Some(*side) != first.side);
+    let beside = first.side.filter(|_| !mixed).zip(route).map(|(side, route)| Beside { side, route });
+    let of = Formed { sides: &sides, beside, opens: first.opens };
+    let places = places.or_else(|| formation(&home, &of, body, floor, route, taken));
     let Some(places) = places else { return };
     for (member, (at, yaw)) in members.iter().zip(places) {
         if let Some(human) = humans.get_mut(*member) {
@@ -334,15 +339,37 @@ fn ring_m(count: usize) -> f64 {
 const WIDEST: i32 = 5;
 const WIDEST_BESIDE: i32 = 9;
 
+/// People who stand together.
+struct Formed<'a> {
+    /// On which side of the robot's way each of them is.
+    sides: &'a [Option<Side>],
+    /// The side on which all of them are.
+    beside: Option<Beside<'a>>,
+    /// Whether they open for the robot.
+    opens: bool,
+}
+
+impl Formed<'_> {
+    /// Whether people on both sides stand where they are stated.
+    fn parted(&self, places: &[(Point, f64)], route: Option<&Polyline>) -> bool {
+        let Some(route) = route.filter(|_| self.beside.is_none()) else { return true };
+        let own = |(side, (at, _)): (&Option<Side>, &(Point, f64))| {
+            side.is_none_or(|side| Beside { side, route }.left_m(at) >= BESIDE_LEAST_M)
+        };
+        self.sides.iter().zip(places).all(own)
+    }
+}
+
 /// Places and headings of a circle near `home`, or of people who stand together as they can; `None` where there is no room.
 fn formation(
     home: &Point,
-    (count, beside, opens): (usize, Option<Beside<'_>>, bool),
+    of: &Formed<'_>,
     body: f64,
     floor: &Floor,
     route: Option<&Polyline>,
     taken: &[(Point, f64)],
 ) -> Option<Vec<(Point, f64)>> {
+    let (count, beside) = (of.sides.len(), &of.beside);
     #[expect(clippy::cast_precision_loss, reason = "a few people")]
     let n = count.max(1) as f64;
     let ring = ring_m(count);
@@ -354,11 +381,13 @@ fn formation(
     let on_way = route.map_or(*home, |route| route.point(s));
     let mut best: Option<(f64, Vec<(Point, f64)>)> = None;
     let widest = if beside.is_some() { WIDEST_BESIDE } else { WIDEST };
+    // Which of them stands where matters to those whose sides are stated.
+    let turns = if beside.is_none() && of.sides.iter().any(Option::is_some) { 8 } else { 4_u32 };
     for ahead in -6..=6_i32 {
         for aside in -widest..=widest {
             let offset = along * (0.25 * f64::from(ahead)) + Vector::new(-along.y, along.x) * (0.25 * f64::from(aside));
             let center = on_way + offset;
-            for turn in 0..4_u32 {
+            for turn in 0..turns {
                 let phase = heading + f64::from(turn) / 4.0 * TAU / n;
                 let places = ring_places(&center, ring, count, phase);
                 let free = places.iter().all(|(at, _)| {
@@ -367,16 +396,16 @@ fn formation(
                         && taken.iter().all(|(other, least)| (at - other).norm() >= *least)
                 });
                 let near = |route: &Polyline| route.project(&center).1 <= 1.45;
-                let there = match &beside {
+                let there = match beside {
                     Some(beside) => places.iter().all(|(at, _)| beside.left_m(at) >= BESIDE_LEAST_M),
                     None => route.is_none_or(near),
                 };
-                if !free || !there {
+                if !free || !there || !of.parted(&places, route) {
                     continue;
                 }
                 let wide = way_round(floor, &center, ring + body, heading);
                 // A way round is what matters, but for those who open for the robot; then near the node and in the robot's line is better.
-                let round = if opens { 0.0 } else { 5.0 * wide };
+                let round = if of.opens { 0.0 } else { 5.0 * wide };
                 let score = round - 0.5 * offset.norm() - 0.6 * (offset.perp(&along).abs() - 0.4).max(0.0);
                 if best.as_ref().is_none_or(|(top, _)| score > *top + 1e-9) {
                     best = Some((score, places));

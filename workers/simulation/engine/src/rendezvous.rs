@@ -28,6 +28,8 @@ const SET_OFF_M: f64 = 2.5;
 const EARLY: f64 = 0.97;
 /// Of a robot that another holds up people keep so far away while they wait for it, m.
 const KEEPS_OFF_M: f64 = 3.0;
+/// Smallest distance to the line of a door, along the way, at which people are held, m.
+const IN_DOOR_M: f64 = 1.2;
 /// Nobody waits longer for a robot that stands, s: it may have been told to wait for them.
 const SET_OFF_S: f64 = 8.0;
 /// Nobody starts before this, s: the first moments show where everybody is.
@@ -149,7 +151,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
     // Whoever would be there long before a robot that somebody else holds up waits until it drives again.
-    if moment.held_up && apart > KEEPS_OFF_M && needed < EARLY * human.speed_mps {
+    if moment.held_up && apart > KEEPS_OFF_M && needed < EARLY * human.speed_mps && !in_doorway(human) {
         return hold;
     }
     if human.started && in_view && moment.first && apart < FACES_M && faces(human, robot) {
@@ -161,7 +163,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         if early && robot.stood_s < SET_OFF_S && !(moment.sight && apart < SET_OFF_M) {
             return hold;
         }
-    } else if needed < 0.9 * slowest && !in_view && timing.held_s < HOLD_MAX_S {
+    } else if needed < 0.9 * slowest && !in_view && !in_doorway(human) && timing.held_s < HOLD_MAX_S {
         timing.held_s += moment.dt;
         return hold;
     }
@@ -173,6 +175,11 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         speed = speed.min((robot.speed_mps().max(0.0) + 0.6 * (behind - 1.2)).max(0.0));
     }
     Pace { speed_mps: speed }
+}
+
+/// Whether a person is in a door, where others have to get by.
+fn in_doorway(human: &Human) -> bool {
+    human.doors.iter().any(|door| (human.s - door.s).abs() < IN_DOOR_M)
 }
 
 /// A robot that somebody holds up who stands nearer to it than this, m, stands because of them.

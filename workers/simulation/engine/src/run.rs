@@ -3,10 +3,11 @@
 use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
 use socrates_model::recording::DRIVEN_LEAF;
+use socrates_model::request::Waypoints;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Event, EventKind, Fault, HumanId, Onlooker, Recording, RecordingHeader, RobotDriver,
-    SimTime,
+    Action, AgentId, AgentState, Event, EventKind, Fault, HumanId, Onlooker, Point, Recording, RecordingHeader,
+    RobotDriver, SimTime,
 };
 
 use crate::advance::Desk;
@@ -180,9 +181,9 @@ impl Engine {
             };
             raised.extend(recorder.last_tick().iter().filter_map(|event| Raised::by(event, &place)));
         }
-        let mut raise = |door: usize| {
+        let mut raise = |door: usize, calls: bool| {
             if let Some(live) = self.doors.doors.get(door) {
-                raised.push(Raised { name: doors::ENCOUNTER.to_owned(), at: Some(live.door.middle()) });
+                raised.push(Raised { name: doors::ENCOUNTER.to_owned(), at: Some(live.door.middle()), calls });
             }
         };
         for human in &self.humans {
@@ -191,12 +192,13 @@ impl Engine {
                 .iter()
                 .filter(|on_way| human.started && on_way.s > human.s - 0.1 && on_way.s - human.s < 1.6)
             {
-                raise(on_way.door);
+                // Those who have changed their way to go in open it themselves.
+                raise(on_way.door, human.diverted);
             }
         }
         if let Some(robot) = &self.robot {
             for on_way in self.robot_doors.iter().filter(|on_way| on_way.s > robot.s && on_way.s - robot.s < 2.5) {
-                raise(on_way.door);
+                raise(on_way.door, false);
             }
         }
         raised
@@ -225,12 +227,13 @@ impl Engine {
         let show = |human: &Human| Shown {
             id: human.id,
             gesture: human.gesture,
-            gesture_to: human.gesture_to,
             steps_ended: human.steps_ended,
             done: human.is_done(),
         };
         let shown: Vec<Shown> = self.humans.iter().map(show).collect();
-        for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
+        // Acts change ways only once all have decided.
+        let mut begin: Vec<usize> = Vec::new();
+        for (place, human) in self.humans.iter_mut().enumerate().filter(|(_, human)| !human.is_recorded()) {
             if let Some(robot) = robot.filter(|_| human.present()) {
                 human.nearest_robot_m = human.nearest_robot_m.min((robot.at - human.at).norm());
             }
@@ -269,11 +272,19 @@ impl Engine {
                 human.errand = crate::human::Errand::default();
                 human.notice.stale = true;
                 human.action = act;
-                turning::begin(human, &self.setup, &self.floor);
+                begin.push(place);
             }
             if let Some(gesture) = say.filter(|gesture| (*gesture, to) != (human.gesture, human.gesture_to)) {
                 (human.gesture, human.gesture_to) = (gesture, to);
                 recorder.tell(EventKind::Gesture { agent: human.agent(), gesture, to });
+            }
+        }
+        for place in begin {
+            let others = self.humans.iter().enumerate().filter(|(other, _)| *other != place);
+            let ends: Vec<Point> = others.filter_map(|(_, human)| human.route.end()).collect();
+            let there = turning::OthersAround { robot: robot.map(|robot| robot.at), ends: &ends };
+            if let Some(human) = self.humans.get_mut(place) {
+                turning::begin(human, &self.setup, &self.floor, &there);
             }
         }
     }
@@ -338,10 +349,11 @@ impl Engine {
             let mut there = self.humans.iter().filter(|human| human.present());
             let full = there.any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
             // It may have come there by another way than the intended one; then it says so by resting there.
-            // A way that ends where it began has led there only once most of it is behind the robot.
-            let led = robot.route.turn_m().is_none_or(|turn| robot.s > turn);
-            let rests = led && left < AT_GOAL_M && robot.command.waiting && robot.has_moved;
-            let stands = (rests || led && full && left < AROUND_GOAL_M) && robot.velocity.norm() < 0.05;
+            let rests = left < AT_GOAL_M && robot.command.waiting && robot.has_moved;
+            let stands = (rests || full && left < AROUND_GOAL_M) && robot.velocity.norm() < 0.05;
+            // A way that passes its own end has led there only once its last fold is behind a robot that is to keep to it.
+            let kept = self.setup.waypoints != Waypoints::Ends;
+            let stands = stands && !(kept && robot.route.folds_m(robot.s, f64::INFINITY).next().is_some());
             robot.at_full_goal_s = if stands { robot.at_full_goal_s + STEP_SECS } else { 0.0 };
             let near = left < AT_GOAL_M && robot.s > robot.route.length_m() - 1.0;
             if robot.arrived_s.is_none() && (near || robot.at_full_goal_s > 2.0) {
@@ -349,12 +361,13 @@ impl Engine {
             }
             arrived = robot.arrived_s.is_some();
         }
-        let mut done = true;
+        let (mut done, mut under_way) = (true, false);
         let mut walkers = Vec::with_capacity(self.humans.len());
         for human in &self.humans {
             let (there, speed_mps) = (human.at_goal(), human.velocity.norm());
             let walks = human.gets_on() && !human.waits();
             done &= human.stays() || there || !walks && speed_mps < 0.05;
+            under_way |= !there && walks && (human.bound || matches!(human.action, Action::GoTo { .. }));
             walkers.push((human.id, human.s, walks && human.started && !there && speed_mps < 0.3));
         }
         Standing {
@@ -363,6 +376,7 @@ impl Engine {
             robot_at: self.robot.as_ref().map(Robot::at),
             arrived,
             people_done: done,
+            under_way,
             met,
             to_meet: self.humans.iter().map(|human| human.meetings.len()).sum(),
             walkers,

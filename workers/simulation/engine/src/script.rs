@@ -1,6 +1,7 @@
 //! Gestures of the robot's script, made whatever planner drives it.
 
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::script::ScriptProgress;
 use socrates_model::{Gesture, HumanId};
 
 /// The moment as the script sees it.
@@ -17,54 +18,51 @@ pub(crate) struct Cue<'a> {
 /// The script with the memory of what was said.
 #[derive(Debug, Clone)]
 pub(crate) struct Script {
-    lines: Vec<(RobotWhen, Gesture, f64, bool)>,
+    progress: ScriptProgress,
+    speaks: bool,
 }
 
 impl Script {
     pub(crate) fn new(rules: &[RobotRule]) -> Self {
-        let say = |rule: &RobotRule| match rule.act {
-            RobotDo::Say(gesture) => Some((rule.when.clone(), gesture, 0.0, false)),
-            RobotDo::Hold(_)
-            | RobotDo::HoldUntil(_)
-            | RobotDo::WaitForLeavers
-            | RobotDo::Follow(_)
-            | RobotDo::Abreast(_)
-            | RobotDo::Overtake(_)
-            | RobotDo::Lead(_) => None,
-        };
-        Self { lines: rules.iter().filter_map(say).collect() }
+        let speaks = rules.iter().any(|rule| matches!(rule.act, RobotDo::Say(_)));
+        Self { progress: ScriptProgress::new(rules), speaks }
     }
 
     /// Whether anything is ever said.
     pub(crate) const fn has_lines(&self) -> bool {
-        !self.lines.is_empty()
+        self.speaks
     }
 
-    /// The gesture that begins now, if any. Each line speaks once; a `blocked` line again each time it is blocked anew.
+    /// The gesture that begins now, if any. Each line speaks once; a `blocked` line again each time it is blocked again.
     pub(crate) fn step(&mut self, cue: &Cue<'_>) -> Option<Gesture> {
-        let mut spoken = None;
-        for (when, gesture, held_s, done) in &mut self.lines {
-            let holds = match when {
-                RobotWhen::Start => cue.now_s >= 0.5,
-                RobotWhen::Blocked(secs) => {
-                    let mut humans = cue.humans.iter();
-                    let blocked = humans.any(|(_, distance, bearing, _)| RobotWhen::is_blocked_by(*distance, *bearing));
-                    *held_s = if blocked { *held_s + cue.dt } else { 0.0 };
-                    *done &= blocked;
-                    *held_s >= *secs
-                }
-                RobotWhen::HumanNear(reach) => cue.humans.iter().any(|(_, distance, _, _)| distance <= reach),
-                RobotWhen::HumanSays(wanted) => {
-                    cue.humans.iter().any(|(_, distance, _, said)| *said == Some(*wanted) && *distance < 10.0)
-                }
-                RobotWhen::AtEncounter(human) => cue.at_encounter.contains(human),
-                RobotWhen::AfterSecs(secs) => cue.now_s >= *secs,
-            };
-            if holds && !*done && spoken.is_none() {
-                *done = true;
-                spoken = Some(*gesture);
-            }
+        if !self.speaks {
+            return None;
         }
+        let holds = |when: &RobotWhen, held_s: &mut f64| match when {
+            RobotWhen::Start => cue.now_s >= 0.5,
+            RobotWhen::Blocked(secs) => {
+                let mut humans = cue.humans.iter();
+                let blocked = humans.any(|(_, distance, bearing, _)| RobotWhen::is_blocked_by(*distance, *bearing));
+                *held_s = if blocked { *held_s + cue.dt } else { 0.0 };
+                *held_s >= *secs
+            }
+            RobotWhen::HumanNear(reach) => cue.humans.iter().any(|(_, distance, _, _)| distance <= reach),
+            RobotWhen::Near(human, reach) => {
+                cue.humans.iter().any(|(id, distance, _, _)| id == human && distance <= reach)
+            }
+            RobotWhen::HumanSays(wanted) => {
+                cue.humans.iter().any(|(_, distance, _, said)| *said == Some(*wanted) && *distance < Gesture::SEEN_M)
+            }
+            RobotWhen::AtEncounter(human) => cue.at_encounter.contains(human),
+            RobotWhen::AfterSecs(secs) => cue.now_s >= *secs,
+            RobotWhen::Did(_) => false,
+        };
+        let mut spoken = None;
+        self.progress.step(cue.now_s, holds, |rule| {
+            if let RobotDo::Say(gesture) = rule.act {
+                spoken = Some(gesture);
+            }
+        });
         spoken
     }
 }

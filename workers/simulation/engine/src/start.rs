@@ -40,7 +40,7 @@ const SWAY_WALKING: f64 = 2.0;
 /// So far before a meeting the robot's way tells from where it comes, m.
 const COMES_M: f64 = 0.5;
 
-/// Whoever stays inside and looks at the robot later looks so far beside the door at first, rad.
+/// Angle beside the door at which a person inside looks first, who is to look at the robot later, rad.
 const TURNED_RAD: f64 = 0.6;
 
 /// Two who go in to one place stand so far to its sides, m.
@@ -72,9 +72,42 @@ fn way(setup: &Setup, nodes: &[NodeId]) -> (Polyline, Vec<(NodeId, f64)>) {
     (line, marks)
 }
 
+/// Distance at which the robot turns back before a person who stands where its way folds, m.
+const TURNS_BEFORE_M: f64 = 1.2;
+
+/// The robot's intended way, with the length at each node. Where it folds back at the node of a person who stands, it turns before them.
+#[must_use]
+pub fn intended_way(setup: &Setup) -> (Polyline, Vec<(NodeId, f64)>) {
+    let (line, marks) = way(setup, &setup.paths.robot);
+    let stands =
+        |node: &NodeId| setup.paths.humans.values().any(|own| matches!(own.as_slice(), [only] if only == node));
+    let taken = |fold: &f64| marks.iter().any(|(node, mark)| (mark - fold).abs() < 1e-6 && stands(node));
+    let cuts: Vec<(f64, f64)> = line
+        .folds_m(0.0, line.length_m())
+        .filter(taken)
+        .map(|fold| (fold - TURNS_BEFORE_M.min(fold), (fold + TURNS_BEFORE_M).min(line.length_m())))
+        .collect();
+    if cuts.is_empty() {
+        return (line, marks);
+    }
+    // A length of the way once what is cut off is gone.
+    let kept = |s: f64| cuts.iter().fold(s, |left, (from, to)| left - (s.min(*to) - from).max(0.0));
+    let mut short = Polyline::default();
+    let mut cut = cuts.iter().peekable();
+    for (point, mark) in line.points().iter().zip(line.marks_m()) {
+        while let Some((from, _)) = cut.next_if(|(from, _)| from < mark) {
+            short.push(line.point(*from));
+        }
+        if !cuts.iter().any(|(from, to)| from < mark && mark < to) {
+            short.push(*point);
+        }
+    }
+    (short, marks.into_iter().map(|(node, mark)| (node, kept(mark))).collect())
+}
+
 /// The robot on its first node.
 pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
-    let (route, nodes) = way(setup, &setup.paths.robot);
+    let (route, nodes) = intended_way(setup);
     let home = route.point(0.0);
     let ahead = route.direction(0.0);
     let yaw = if ahead.norm() > 0.5 { libm::atan2(ahead.y, ahead.x) } else { 0.0 };
@@ -132,7 +165,7 @@ pub(crate) fn humans(
     floor: &Floor,
     robot: Option<&Robot>,
 ) -> Result<Vec<Human>, Vec<Fault>> {
-    let (robot_way, robot_marks) = way(setup, &setup.paths.robot);
+    let (robot_way, robot_marks) = intended_way(setup);
     let mut inside = BTreeMap::new();
     let mut humans = Vec::new();
     for proposal in &setup.proposal.humans {
@@ -143,7 +176,7 @@ pub(crate) fn humans(
             .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
             .filter_map(|other| other.route.end())
             .collect();
-        // Who goes in through a door does not end short of the others, in the door.
+        // A person who goes in through a door does not end short of the others, in the door.
         if human.relation != Relation::Static || human.doors.is_empty() {
             human.route = ends::apart(human.route, &taken, robot_way.end(), floor);
         } else if let Some(other) = humans.iter_mut().find(|other: &&mut Human| same_end(other, &human)) {
@@ -240,7 +273,7 @@ fn human(
         let looks = if proposal.rules.iter().any(sees) { across - along } else { across };
         facing = libm::atan2(looks.y, looks.x);
     }
-    // Whoever stays inside and is to look at the robot when it comes is not looking at its door all along.
+    // A person who stays inside and is to look at the robot when it comes is not looking at its door all along.
     let looks = |rule: &socrates_model::Rule| rule.step.is_some() && rule.act == Action::LookAtRobot;
     let off_rad = if proposal.rules.iter().any(looks) { TURNED_RAD } else { 0.0 };
     let state = tree.start_with(&BTreeMap::from([
@@ -267,6 +300,7 @@ fn human(
         speed_mps,
         steps: proposal.steps(),
         fastest_mps,
+        bound: is_bound(setup, proposal),
         opens: proposal.rules.iter().any(|rule| rule.act == socrates_model::Action::MakeRoom),
         ..bare(proposal.id, tree, state, at)
     }
@@ -285,6 +319,12 @@ fn fastest(setup: &Setup, proposal: &HumanProposal) -> f64 {
         }
     });
     stated.map_or(f64::INFINITY, |mps| STATED * mps)
+}
+
+/// Whether a clause asks that this human gets to the place at the end of their way.
+fn is_bound(setup: &Setup, proposal: &HumanProposal) -> bool {
+    let gets_to = |clause: &Clause| matches!(clause.predicate, Predicate::GetsTo { human, .. } if human == proposal.id);
+    setup.proposal.expected_events.iter().any(gets_to)
 }
 
 /// Companions walk so far beside the robot, m.
@@ -348,6 +388,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         diverted: false,
         errand: Errand::default(),
         fastest_mps: f64::INFINITY,
+        bound: false,
         opens: false,
         anchor: None,
         aside_m: 0.0,
@@ -366,7 +407,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
 
 type Way = (Polyline, Vec<(NodeId, f64)>, Vec<Meeting>);
 
-/// Whoever could not be at its encounter in time even at a fast walk is already under way at tick 0: it starts
+/// A person who could not be at their encounter in time even at a fast walk is already under way at tick 0: it starts
 /// later on its path, but never nearer than [`STILL_LEFT_M`] to the (first) encounter.
 fn in_time(
     setup: &Setup,

@@ -125,7 +125,7 @@ fn somebody_goes_to_a_place_and_stays_there() {
 }
 
 #[test]
-fn a_sign_to_one_is_noticed_by_nobody_else() {
+fn a_sign_to_one_faces_them_and_is_seen_by_all_who_wait_for_it() {
     let (to, other) = (HumanId::new(2), HumanId::new(3));
     let says = Rule {
         gesture: Some(Gesture::Wait),
@@ -135,14 +135,8 @@ fn a_sign_to_one_is_noticed_by_nobody_else() {
     };
     let heard = |human| {
         let when = vec![Trigger::HumanSays(HumanId::new(1), Gesture::Wait)];
-        Rule {
-            when,
-            act: Action::LookAtRobot,
-            latched: true,
-            step: Some(1),
-            for_s: Some(1.0),
-            ..step(human, 1, &[], Action::LookAtRobot)
-        }
+        let looks = step(human, 1, &[], Action::LookAtRobot);
+        Rule { when, latched: true, step: Some(1), for_s: Some(1.0), ..looks }
     };
     let recording = run(setup(
         corridor(),
@@ -155,11 +149,12 @@ fn a_sign_to_one_is_noticed_by_nobody_else() {
         &[(1, "c")],
     ));
     let wait = Some(Gesture::Wait);
-    let told =
+    let made =
         EventKind::Gesture { agent: AgentId::Human(HumanId::new(1)), gesture: wait, to: Some(AgentId::Human(to)) };
-    let said = time(&recording, &told).expect("the sign says to whom it is made");
-    assert!(time(&recording, &EventKind::StepEnded { human: to, step: 1 }).is_some());
-    assert!(time(&recording, &EventKind::StepEnded { human: other, step: 1 }).is_none());
+    let said = time(&recording, &made).expect("the sign says to whom it is made");
+    for human in [to, other] {
+        assert!(time(&recording, &EventKind::StepEnded { human, step: 1 }).is_some(), "{human}");
+    }
     let at = |t: f64| recording.tick((t * 100.0) as usize);
     let (me, you) = (at(said + 2.0)[1], at(said + 2.0)[2]);
     let off = socrates_model::geometry::wrap_angle(libm::atan2(you.y - me.y, you.x - me.x) - me.yaw);

@@ -1,6 +1,6 @@
 //! What changes somebody's way or pace for good: they turn back, or walk at another speed from then on.
 
-use socrates_model::{Action, NodeId, Point, Polyline};
+use socrates_model::{Action, DoorKind, NodeId, Point, Polyline};
 
 use crate::floor::Floor;
 use crate::human::{Human, Meeting};
@@ -28,12 +28,28 @@ const MOST_TRIED: usize = 6;
 /// What lies behind somebody is so far along their way, m: before its beginning.
 const BEHIND_M: f64 = -1.0;
 
+/// The robot and the other people.
+pub(crate) struct OthersAround<'a> {
+    pub(crate) robot: Option<Point>,
+    /// Ends of the other people's ways.
+    pub(crate) ends: &'a [Point],
+}
+
+/// Smallest distance of a goal to the end of another person's way, m, and of a way to the robot where there is another.
+const TAKEN_M: f64 = 0.7;
+const PAST_ROBOT_M: f64 = 1.0;
+/// Costs of a way past the robot and of a goal that is taken, m of way.
+const PAST_ROBOT_COST_M: f64 = 30.0;
+const TAKEN_COST_M: f64 = 60.0;
+/// Into a car people go as deep as they can: what a meter of way inside it is worth, m.
+const DEEPER: f64 = 2.0;
+
 /// Begins the present act, where it changes the way or the pace.
-pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor) {
+pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor, there: &OthersAround<'_>) {
     match &human.action {
         Action::TurnBack if !human.diverted => turn(human, setup, floor),
         Action::GoTo { nodes, .. } => {
-            if let Some((node, way)) = nearest(human, nodes, setup, floor) {
+            if let Some((node, way)) = nearest(human, nodes, (setup, floor), there) {
                 go(human, node, way, setup);
             }
         }
@@ -109,8 +125,14 @@ fn onward(points: &mut Vec<Point>, human: &Human, setup: &Setup, floor: &Floor) 
     }
 }
 
-/// The way to the nearest of some nodes; of two as near, the first.
-fn nearest(human: &Human, nodes: &[NodeId], setup: &Setup, floor: &Floor) -> Option<(NodeId, Polyline)> {
+/// The way to the nearest of some nodes that is free, not past the robot if that can be; of two as near, the first. Of an elevator
+/// the deepest.
+fn nearest(
+    human: &Human,
+    nodes: &[NodeId],
+    (setup, floor): (&Setup, &Floor),
+    there: &OthersAround<'_>,
+) -> Option<(NodeId, Polyline)> {
     let at = human.at;
     let mut all: Vec<(f64, &NodeId, Point)> = nodes
         .iter()
@@ -121,8 +143,31 @@ fn nearest(human: &Human, nodes: &[NodeId], setup: &Setup, floor: &Floor) -> Opt
         let way = |room: f64| floor.way(&at, goal, room);
         way(human.radius_m + WIDE_M).or_else(|| way(human.radius_m - NARROW_M))
     };
-    let ways = all.into_iter().take(MOST_TRIED).filter_map(|(_, id, goal)| Some((id.clone(), way(&goal)?)));
-    ways.min_by(|a, b| a.1.length_m().total_cmp(&b.1.length_m()))
+    let taken = |goal: &Point| there.ends.iter().any(|end| (end - goal).norm() < TAKEN_M);
+    let past_robot = |way: &Polyline| {
+        there.robot.is_some_and(|robot| (robot - at).norm() > PAST_ROBOT_M && way.project(&robot).1 < PAST_ROBOT_M)
+    };
+    let in_car = |id: &NodeId| {
+        let cars = setup.location.doors.iter().filter(|door| door.kind == DoorKind::Elevator);
+        cars.into_iter().any(|door| door.inside.contains(id))
+    };
+    let cost_m = |id: &NodeId, goal: &Point, way: &Polyline| {
+        let past_m = if past_robot(way) { PAST_ROBOT_COST_M } else { 0.0 };
+        let taken_m = if taken(goal) { TAKEN_COST_M } else { 0.0 };
+        let own_m = if in_car(id) { way.length_m() - DEEPER * inside_m(setup, id, goal) } else { way.length_m() };
+        own_m + past_m + taken_m
+    };
+    let ways = all.into_iter().take(MOST_TRIED).filter_map(|(_, id, goal)| {
+        let way = way(&goal)?;
+        Some((cost_m(id, &goal, &way), id.clone(), way))
+    });
+    ways.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id, way)| (id, way))
+}
+
+/// How far a node lies behind the door of its car, m.
+fn inside_m(setup: &Setup, id: &NodeId, at: &Point) -> f64 {
+    let doors = setup.location.doors.iter().filter(|door| door.inside.contains(id));
+    doors.map(|door| (door.middle() - at).norm()).fold(f64::INFINITY, f64::min).min(f64::from(u8::MAX))
 }
 
 /// From here on the way leads to another place.

@@ -35,7 +35,6 @@ pub(crate) struct RobotSeen {
 pub(crate) struct Shown {
     pub(crate) id: HumanId,
     pub(crate) gesture: Option<Gesture>,
-    pub(crate) gesture_to: Option<AgentId>,
     /// How many of their steps have ended, and whether they are done.
     pub(crate) steps_ended: u32,
     pub(crate) done: bool,
@@ -160,9 +159,8 @@ impl World for View<'_> {
     }
 
     fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
-        // A sign to somebody else is none for this one.
-        let me = AgentId::Human(self.human.id);
-        self.shown(id).filter(|shown| shown.gesture_to.is_none_or(|to| to == me)).and_then(|shown| shown.gesture)
+        // A person who waits for a sign sees it, whomever it is made to.
+        self.shown(id).and_then(|shown| shown.gesture)
     }
 
     fn robot_stood_s(&self) -> f64 {

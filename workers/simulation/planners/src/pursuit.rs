@@ -36,11 +36,15 @@ pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, 
     Command { v, omega: if left < 0.08 { 0.0 } else { omega }, ..Command::default() }
 }
 
-/// How far the end of a way is, m; before the turn of one there and back, so much as is left of it.
+/// A way passes its own end nearer than this, m, with more than so much of it left, m.
+const PASSES_M: f64 = 2.0;
+const LEFT_M: f64 = 3.0;
+
+/// Distance to the end of a way, m; where a way passes its own end on the way there, what is left of it.
 pub(crate) fn left_m(way: &Polyline, at: &Point, s: f64) -> f64 {
-    let end = way.end().unwrap_or(*at);
-    let straight = (end - at).norm();
-    if way.turn_m().is_some_and(|turn| s < turn) { straight.max(way.length_m() - s) } else { straight }
+    let straight = (way.end().unwrap_or(*at) - at).norm();
+    let along = way.length_m() - s;
+    if straight < PASSES_M && along > straight + LEFT_M { along } else { straight }
 }
 
 /// As [`steer`], without cutting a corner: to the farthest point a little ahead that can be reached straight, and never faster

@@ -2,7 +2,9 @@
 //! round people who stand or come towards it, waits for those who cross, and asks after 3 s of waiting; before somebody who
 //! does not let it pass it stops dodging.
 
-use socrates_model::{Command, Door, Gesture, HumanId, Observation, Point, Polyline, RobotDriver, RobotModel};
+use socrates_model::{
+    Command, Door, Gesture, HumanId, Observation, Point, Polyline, RobotDriver, RobotModel, SeenPerson,
+};
 
 use crate::detour;
 use crate::ground::{Ground, STANDING_MPS, closed_door_ahead, obstacles, waits_at_door};
@@ -30,7 +32,7 @@ const KEPT_M: f64 = 1.5;
 const KEPT_GAP_M: f64 = 0.05;
 const KEPT_MORE_M: f64 = 0.3;
 const GAP_STEP_M: f64 = 0.2;
-/// Whoever blocks the way stands in it by so much, m.
+/// Least overlap of a person with the way that blocks it, m.
 const BLOCKS_M: f64 = 0.1;
 /// Length of the way that is looked at for people, m.
 const LOOK_M: f64 = 4.0;
@@ -131,14 +133,15 @@ impl Reference {
     }
 
     /// Whether it drives up to whoever stands in the middle of its way instead of round them: it is to be blocked by somebody first.
-    /// Among several it does not, who would shut it in.
+    /// Among walking people it does not: they would shut it in.
     fn comes_up(&self, seen: &Observation<'_>) -> bool {
-        let mut near = seen.people.iter().filter(|person| (person.at - seen.pose.point()).norm() < PEOPLE_M);
-        let (Some(person), None) = (near.next(), near.next()) else { return false };
-        let (s, aside) = self.route.project_within(&person.at, self.s, self.s + PEOPLE_M);
-        let stands = person.velocity.norm() < STANDING_MPS;
-        let in_way = s > self.s && aside < self.robot.radius_m + person.radius_m - BLOCKS_M;
-        self.script.is_to_be_blocked() && stands && in_way
+        let near = || seen.people.iter().filter(|person| (person.at - seen.pose.point()).norm() < PEOPLE_M);
+        let stands = |person: &SeenPerson| person.velocity.norm() < STANDING_MPS;
+        let in_way = |person: &SeenPerson| {
+            let (s, aside) = self.route.project_within(&person.at, self.s, self.s + PEOPLE_M);
+            s > self.s && aside < self.robot.radius_m + person.radius_m - BLOCKS_M
+        };
+        self.script.is_to_be_blocked() && near().all(stands) && near().any(in_way)
     }
 
     /// A way round, where the route ahead is not free of people or the robot is off it.

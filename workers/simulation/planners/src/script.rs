@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 
 use socrates_model::geometry::wrap_angle;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
-use socrates_model::{HumanId, Observation, Point};
+use socrates_model::script::ScriptProgress;
+use socrates_model::{Gesture, HumanId, Observation, Point, SeenPerson};
 
-/// Within this distance of an encounter the robot is at it, m.
-const AT_ENCOUNTER_M: f64 = 1.0;
+/// Shortest stand of a robot that waits, s; a shorter one only slows it down.
+const LEAST_STAND_S: f64 = 1.0;
+/// A robot slower than this stands, m/s.
+const STANDS_MPS: f64 = 0.05;
 
 /// What the script wants now.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,75 +32,54 @@ pub(crate) struct Wish {
 /// The script with its memory.
 #[derive(Debug, Clone)]
 pub(crate) struct Script {
-    lines: Vec<(RobotRule, f64, bool)>,
+    progress: ScriptProgress,
     encounters: BTreeMap<HumanId, Point>,
-    hold_until_s: f64,
-    /// What it waits for, with its memory of being blocked, s.
-    waits_for: Option<(RobotWhen, f64)>,
     /// For how long it has to be blocked before it does what it does then, and how long it has been, s; none once it has been, or
     /// where it does nothing then.
     blocked_s: Option<(f64, f64)>,
+    /// Remaining time for which it stands, s: a robot that waits is seen to.
+    stands_s: f64,
     wish: Wish,
 }
 
 impl Script {
     pub(crate) fn new(rules: &[RobotRule], encounters: &BTreeMap<HumanId, Point>) -> Self {
-        let lines =
-            rules.iter().filter(|rule| !matches!(rule.act, RobotDo::Say(_))).map(|rule| (rule.clone(), 0.0, false));
-        let blocked = rules.iter().filter_map(|rule| match rule.when {
-            RobotWhen::Blocked(secs) => Some(secs),
-            RobotWhen::Start
-            | RobotWhen::HumanNear(_)
-            | RobotWhen::HumanSays(_)
-            | RobotWhen::AtEncounter(_)
-            | RobotWhen::AfterSecs(_) => None,
-        });
+        let blocked = |rule: &RobotRule| if let RobotWhen::Blocked(secs) = rule.when { Some(secs) } else { None };
+        let blocked = rules.iter().filter_map(blocked);
         Self {
-            lines: lines.collect(),
+            progress: ScriptProgress::new(rules),
             encounters: encounters.clone(),
-            hold_until_s: 0.0,
-            waits_for: None,
             blocked_s: blocked.reduce(f64::max).map(|secs| (secs, 0.0)),
+            stands_s: 0.0,
             wish: Wish::default(),
         }
     }
 
     /// One call on, `dt` seconds after the last.
     pub(crate) fn step(&mut self, seen: &Observation<'_>, dt: f64) -> Wish {
-        let now = seen.time.secs();
-        let encounters = &self.encounters;
-        if let Some((secs, held_s)) = &mut self.blocked_s
+        let Self { progress, encounters, blocked_s, stands_s, wish } = self;
+        if let Some((secs, held_s)) = blocked_s
             && holds(&RobotWhen::Blocked(*secs), held_s, encounters, seen, dt)
         {
-            self.blocked_s = None;
+            *blocked_s = None;
         }
-        if let Some((until, held_s)) = &mut self.waits_for
-            && (holds(until, held_s, encounters, seen, dt) || now >= self.hold_until_s)
-        {
-            (self.waits_for, self.hold_until_s) = (None, now);
+        let moment = |when: &RobotWhen, held_s: &mut f64| holds(when, held_s, encounters, seen, dt);
+        progress.step(seen.time.secs(), moment, |rule| match &rule.act {
+            RobotDo::WaitForLeavers => wish.wait_for_leavers = true,
+            RobotDo::Follow(human) => wish.follow = Some(*human),
+            RobotDo::Abreast(human) => wish.abreast = Some(*human),
+            RobotDo::Overtake(human) => wish.overtake = Some(*human),
+            RobotDo::Lead(reach) => wish.lead_m = Some(*reach),
+            RobotDo::Hold(secs) => *stands_s = stands_s.max(secs.min(LEAST_STAND_S)),
+            RobotDo::HoldUntil(_) => *stands_s = stands_s.max(LEAST_STAND_S),
+            RobotDo::Say(_) => {}
+        });
+        let holds = progress.active().any(|rule| matches!(rule.act, RobotDo::Hold(_) | RobotDo::HoldUntil(_)));
+        if seen.v.abs() < STANDS_MPS {
+            *stands_s = (*stands_s - dt).max(0.0);
         }
-        for (rule, held_s, done) in &mut self.lines {
-            let holds = holds(&rule.when, held_s, encounters, seen, dt);
-            if !holds || *done {
-                continue;
-            }
-            *done = true;
-            match &rule.act {
-                RobotDo::Hold(secs) => self.hold_until_s = self.hold_until_s.max(now + secs),
-                RobotDo::HoldUntil(until) => {
-                    self.waits_for = Some((until.clone(), 0.0));
-                    self.hold_until_s = now + RobotDo::HOLD_MOST_S;
-                }
-                RobotDo::WaitForLeavers => self.wish.wait_for_leavers = true,
-                RobotDo::Follow(human) => self.wish.follow = Some(*human),
-                RobotDo::Abreast(human) => self.wish.abreast = Some(*human),
-                RobotDo::Overtake(human) => self.wish.overtake = Some(*human),
-                RobotDo::Lead(reach) => self.wish.lead_m = Some(*reach),
-                RobotDo::Say(_) => {}
-            }
-        }
-        self.wish.hold = now < self.hold_until_s;
-        self.wish
+        wish.hold = holds || *stands_s > 0.0;
+        *wish
     }
 
     /// Whether it still has something to do for which somebody has to block it.
@@ -132,10 +114,19 @@ fn holds(
             *held_s >= *secs
         }
         RobotWhen::HumanNear(reach) => seen.people.iter().any(|person| (person.at - at).norm() <= *reach),
-        RobotWhen::HumanSays(gesture) => {
-            seen.people.iter().any(|person| person.gesture == Some(*gesture) && (person.at - at).norm() < 10.0)
+        RobotWhen::Near(human, reach) => {
+            seen.people.iter().any(|person| person.id == *human && (person.at - at).norm() <= *reach)
         }
-        RobotWhen::AtEncounter(human) => encounters.get(human).is_some_and(|spot| (spot - at).norm() < AT_ENCOUNTER_M),
+        RobotWhen::HumanSays(gesture) => {
+            let near = |person: &SeenPerson| (person.at - at).norm() < Gesture::SEEN_M;
+            seen.people.iter().any(|person| person.gesture == Some(*gesture) && near(person))
+        }
+        RobotWhen::AtEncounter(human) => encounters.get(human).is_some_and(|spot| {
+            let person = seen.people.iter().find(|person| person.id == *human);
+            let apart = |from: &Point| person.map_or(f64::INFINITY, |person| (person.at - from).norm());
+            RobotWhen::at_encounter_m((spot - at).norm(), apart(&at), apart(spot)) > 0.0
+        }),
         RobotWhen::AfterSecs(secs) => seen.time.secs() >= *secs,
+        RobotWhen::Did(_) => false,
     }
 }

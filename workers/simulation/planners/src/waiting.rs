@@ -10,6 +10,12 @@ const ASIDE_M: f64 = 1.25;
 /// Distance in front of the door line that is aimed at, m.
 const BEFORE_M: f64 = 1.6;
 
+/// Largest length behind a door of a way that leads in there, m.
+const INSIDE_M: f64 = 10.0;
+/// Largest distance of a door beside a way that leads past it, m, and distance before it at which the robot waits, m.
+const PAST_M: f64 = 3.5;
+const SHORT_M: f64 = 2.4;
+
 /// A place to wait at.
 #[derive(Debug, Clone)]
 pub(crate) struct WaitingSpot {
@@ -19,9 +25,15 @@ pub(crate) struct WaitingSpot {
     pub(crate) leave_s: f64,
 }
 
-/// The spot for a way: beside the first door on it, or beside its last stretch where no door is on it.
+/// The spot for a way: beside the door through which it leads in at last, on it before a door that it leads past, or beside its last stretch
+/// where there is neither.
 pub(crate) fn spot(ground: &Ground, route: &Polyline, doors: &[Door]) -> Option<WaitingSpot> {
-    let (door_s, middle, reach) = match first_door(route, doors) {
+    let entered = last_door(route, doors).filter(|(s, _)| route.length_m() - s <= INSIDE_M);
+    if let (None, Some(s)) = (&entered, passed(route, doors)) {
+        let stop_s = (s - SHORT_M).max(0.0);
+        return Some(WaitingSpot { at: route.point(stop_s), leave_s: (stop_s - 0.5).max(0.0) });
+    }
+    let (door_s, middle, reach) = match entered {
         Some((s, door)) => (s, door.middle(), opening_reach(door)),
         None => (route.length_m(), route.end()?, f64::INFINITY),
     };
@@ -52,13 +64,20 @@ pub(crate) fn spot(ground: &Ground, route: &Polyline, doors: &[Door]) -> Option<
     Some(WaitingSpot { at, leave_s: (door_s - 4.0).max(0.0) })
 }
 
-fn first_door<'a>(route: &Polyline, doors: &'a [Door]) -> Option<(f64, &'a Door)> {
+/// Where a way leads nearest to a door that it does not lead through, m along it.
+fn passed(route: &Polyline, doors: &[Door]) -> Option<f64> {
+    let crosses = |door: &Door| last_door(route, std::slice::from_ref(door)).is_some();
+    let near = doors.iter().filter(|door| !crosses(door)).map(|door| route.project(&door.middle()));
+    near.filter(|(_, off_m)| *off_m <= PAST_M).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(s, _)| s)
+}
+
+fn last_door<'a>(route: &Polyline, doors: &'a [Door]) -> Option<(f64, &'a Door)> {
     let mut found: Option<(f64, &Door)> = None;
     for (ends, marks) in route.points().windows(2).zip(route.marks_m().windows(2)) {
         let ([a, b], [s0, _]) = (ends, marks) else { continue };
         for door in doors.iter().filter(|door| segments_cross(a, b, &door.from, &door.to)) {
             let s = s0 + (door.middle() - a).dot(&(b - a).normalize()).max(0.0);
-            if found.is_none_or(|(least, _)| s < least) {
+            if found.is_none_or(|(most, _)| s > most) {
                 found = Some((s, door));
             }
         }

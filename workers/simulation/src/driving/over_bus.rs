@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use socrates_kit::Cancel;
 use socrates_link::{Bus, LinkError};
-use socrates_model::driver::{EndMessage, MissionAnswer, Shown, map_cells};
+use socrates_model::driver::{EndMessage, MissionAnswer, ShownPeople, map_cells};
 use socrates_model::lockstep::{StepHead, read_command, step_bytes};
 use socrates_model::{Command, Digest, Fault, Observation, Point, Polyline, RobotDriver, SeenPerson};
 use tokio::runtime::Handle;
@@ -137,14 +137,14 @@ impl Remote {
     fn bytes(&mut self, seen: &Observation<'_>) -> Vec<u8> {
         let head = self.head(&seen.pose.point());
         let hidden: Vec<SeenPerson> = match self.answer.people {
-            Shown::Seen => Vec::new(),
-            Shown::All => {
+            ShownPeople::Seen => Vec::new(),
+            ShownPeople::All => {
                 let in_sight = |person: &SeenPerson| seen.people.iter().any(|other| other.id == person.id);
                 (seen.everybody)().into_iter().filter(|person| !in_sight(person)).collect()
             }
         };
         let lidar = if self.answer.lidar { (seen.lidar)() } else { Vec::new() };
-        let robot = seen.robot.filter(|robot| robot.in_sight || self.answer.people == Shown::All);
+        let robot = seen.robot.filter(|robot| robot.in_sight || self.answer.people == ShownPeople::All);
         step_bytes(&head, &Observation { robot, ..*seen }, &hidden, &lidar)
     }
 

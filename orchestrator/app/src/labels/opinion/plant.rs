@@ -125,6 +125,7 @@ impl<'a> Held<'a> {
             | FactKind::Facing { .. }
             | FactKind::Pace { .. }
             | FactKind::Goal { .. }
+            | FactKind::MeetsAt { .. }
             | FactKind::MeetsTimes { .. }
             | FactKind::Before { .. }
             | FactKind::Place(_)
