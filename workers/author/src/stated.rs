@@ -317,13 +317,15 @@ mod tests {
         let mut answer = answer();
         answer["reading"]["s3"] = json!(["expected_behavior: keeps to the right"]);
         answer["expected_behavior"] = json!("Keeps to the right.");
-        let made = made(&answer).await;
-        let reading = made.reading.unwrap();
-        assert!(reading.missing().is_empty(), "{:?}", reading.missing());
+        let rough = "A visitor comes towards the robot and waves. Then he turns back. The robot keeps to the right.";
+        let question = question(&json!({"rough_scenario": rough}));
+        let made = attempt(&Says(answer.to_string()), &question).await;
+        let reading = made.unwrap_or_else(|refused| panic!("{:?}", refused.faults)).reading.unwrap();
+        assert!(reading.missing().is_empty(), "{:?}", reading.statements);
         let Became::Read { lines, facts } = &reading.statements[2].became else { panic!("{:?}", reading.statements) };
         assert!(lines[0].ends_with("keeps to the right") && facts.is_empty(), "{lines:?}");
         // Asked again, the author sees what it said of each sentence.
-        let again = account::again(&Question { reading, ..question(&json!({})) }).unwrap().account.unwrap();
+        let again = account::again(&Question { reading, ..question }).unwrap().account.unwrap();
         assert_eq!(json!(again["s3"]), answer["reading"]["s3"]);
         assert_eq!(json!(again["s1"]), answer["reading"]["s1"]);
     }
