@@ -256,7 +256,10 @@ mod tests {
         }});
         let account = parse_account(&text.to_string()).unwrap();
         assert_eq!(account.0["s2"], Share::Background(Background::Setting));
-        assert_eq!(account.0["s3"], Share::Asked { claims: Vec::new(), expected: None, cannot: Some("nobody flies".into()) });
+        assert_eq!(
+            account.0["s3"],
+            Share::Asked { claims: Vec::new(), expected: None, cannot: Some("nobody flies".into()) }
+        );
         let Share::Asked { claims, cannot, .. } = &account.0["s1"] else { panic!() };
         assert_eq!((claims[0].of, claims[1].of.unwrap().to_string()), (None, "human_1".to_owned()));
         assert_eq!((claims[1].quote.as_str(), cannot.as_deref()), ("wave: and smile", Some("nobody smiles")));

@@ -1,74 +1,30 @@
 //! The words of a scenario as a question lists them: relations, acts, moments, signs, and the robot's moments and deeds.
 
 use serde_json::Value;
-use socrates_model::form::{Deed, PlaceWord, RobotDeed, RobotMoment, When};
-use socrates_model::{Gesture, PlaceClass};
+use socrates_model::Gesture;
+use socrates_model::act::ACTS;
+use socrates_model::form::{RobotDeed, RobotMoment};
+use socrates_model::rule::TRIGGERS;
 
 use crate::vocabulary::{relations, row, short, told_gesture};
 
 /// Everything that a scenario may say: relations, acts, moments, signs, and the robot's moments and deeds.
 pub(crate) fn tables() -> String {
+    let line = |(form, meaning): (String, &str)| format!("{}\n", format!("{form} {meaning}").trim_end());
     let lines = |rows: &[(Value, String)]| -> String {
-        let each =
-            rows.iter().map(
-                |(form, meaning)| {
-                    if meaning.is_empty() { format!("{form}\n") } else { format!("{form} {meaning}\n") }
-                },
-            );
-        each.collect()
+        rows.iter().map(|(form, meaning)| line((form.to_string(), meaning))).collect()
     };
     let signs: Vec<String> = Gesture::ALL.iter().map(|gesture| told_gesture(*gesture)).collect();
     format!(
         "## relation\n{}## act\n{}## when, until: one or a list, all of which hold; m between centers, 2 to 6: the robot stops 1.6 m before who stands in its way\n{}## say\n{}\n\
          ## robot.does: when\n{}## robot.does: one of\n{}",
         short(&relations()),
-        lines(&deeds()),
-        lines(&moments()),
+        ACTS.iter().map(|act| line((act.json(), act.meaning))).collect::<String>(),
+        TRIGGERS.iter().map(|one| line((one.json(), one.meaning))).collect::<String>(),
         signs.join(", "),
         lines(&robot_moments()),
         lines(&robot_deeds()),
     )
-}
-
-fn deeds() -> Vec<(Value, String)> {
-    let nurse = || "human_2".to_owned();
-    vec![
-        row(&Deed::Navigate, "walks on"),
-        row(&Deed::StandStill, ""),
-        row(&Deed::LookAtRobot, "stands and turns to it"),
-        row(&Deed::LookAt(nurse()), ""),
-        row(&Deed::FollowRobot, "at 1 to 2 m"),
-        row(&Deed::FollowHuman(nurse()), ""),
-        row(&Deed::RunAway, ""),
-        row(&Deed::GiveWay, "steps aside"),
-        row(&Deed::MakeRoom, "for those who stand: out of the robot's way, and back once it has passed"),
-        row(&Deed::Block, "stays in front of it"),
-        row(&Deed::Approach, "comes up to it, to 1.2 m; `near_m` 0.7 to 2"),
-        row(&Deed::TurnBack, "walks back the way they came, from then on; for those who walk by their relation"),
-        row(&Deed::GoTo(PlaceWord::Class(PlaceClass::Corridor)), "leaves the way for such a place, and stays there"),
-        row(&Deed::ChangePace, "walks on at the `pace` of the step; for those who walk by their relation"),
-    ]
-}
-
-fn moments() -> Vec<(Value, String)> {
-    let nurse = || "human_2".to_owned();
-    vec![
-        row(&When::Always, "from the start"),
-        row(&When::RobotVisible(5.0), "seen within this distance, m, 0.3 to 15; never by those who walk ahead of it"),
-        row(&When::RobotNear(2.0), "through walls too"),
-        row(&When::RobotBlocking(2.0), "near, and stands in their way"),
-        row(&When::RobotMoving, ""),
-        row(&When::RobotStopped, ""),
-        row(&When::StoppedFor(3.0), "s"),
-        row(&When::RobotPassed, "was near and goes away again"),
-        row(&When::RobotSays(Gesture::ExcuseMe), ""),
-        row(&When::HumanSays(nurse(), Gesture::Wait), ""),
-        row(&When::Did(nurse(), 1), "the first step of their `does` has ended"),
-        row(&When::Done(nurse()), "all their steps have ended; without steps: they are past where they meet the robot"),
-        row(&When::AtEncounter, "they are where they meet the robot"),
-        row(&When::GoalReached, "they are at the end of their way"),
-        row(&When::AfterSecs(10.0), "after the start of the run"),
-    ]
 }
 
 fn robot_moments() -> Vec<(Value, String)> {

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{
-    AgentId, Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading, Where,
-};
+use socrates_model::{Clause, ClauseRole, Fault, FaultCode, HumanId, Predicate, Proposal, Reading, Where};
 
 use crate::{limits, list};
 
@@ -19,13 +17,13 @@ pub(crate) fn humans(proposal: &Proposal) -> Vec<Fault> {
 /// Every reaction, gesture, place and group that was asked for needs a setup clause that names it as its source.
 pub(crate) fn facts(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
     let mut faults = Vec::new();
-    for fact in reading.facts.iter().filter(|fact| needs_clause(&fact.kind)) {
+    for fact in reading.facts.iter().filter(|fact| fact.kind.needs_clause()) {
         let carriers: Vec<&Clause> = must_setup(proposal).filter(|clause| clause.source == fact.id).collect();
         if carriers.is_empty() {
             let message =
                 format!("\"{}\" was asked for, and no clause of the proposal shows whether it happens", fact.quote);
             faults.push(Fault::new(FaultCode::PVerify, Where::key(format_args!("fact {}", fact.id)), message));
-        } else if let Some(owner) = human_of(fact)
+        } else if let Some(owner) = fact.kind.human()
             && !carriers.iter().any(|clause| speaks_of(clause, owner, proposal))
         {
             let message = format!(
@@ -93,68 +91,6 @@ fn speaks_of(clause: &Clause, human: HumanId, proposal: &Proposal) -> bool {
         false
     };
     led || grouped || all || ordered || clause.predicate.human() == Some(human)
-}
-
-const fn needs_clause(kind: &FactKind) -> bool {
-    match kind {
-        FactKind::Group { .. }
-        | FactKind::Reacts { .. }
-        | FactKind::Gestures { .. }
-        | FactKind::GesturesTo { .. }
-        | FactKind::MeetsTimes { .. }
-        | FactKind::Side { .. }
-        | FactKind::Facing { .. }
-        | FactKind::Pace { .. }
-        | FactKind::Goal { .. }
-        | FactKind::MeetsAt { .. }
-        | FactKind::Before { .. }
-        | FactKind::Place(_)
-        | FactKind::RobotSays(_)
-        | FactKind::RobotDoes(_)
-        | FactKind::Asked { of: None | Some(AgentId::Human(_)) } => true,
-        // What the robot is asked to do is its task, a line of its script or an outcome.
-        FactKind::Asked { of: Some(AgentId::Robot) }
-        | FactKind::Humans(_)
-        | FactKind::Relates { .. }
-        | FactKind::RobotTask(_)
-        | FactKind::RobotStart(_)
-        | FactKind::RobotGoal(_)
-        | FactKind::RobotAt { .. }
-        | FactKind::Pattern(_) => false,
-    }
-}
-
-const fn human_of(fact: &Fact) -> Option<HumanId> {
-    match &fact.kind {
-        FactKind::Reacts { human, .. }
-        | FactKind::Gestures { human, .. }
-        | FactKind::GesturesTo { human, .. }
-        | FactKind::MeetsTimes { human, .. }
-        | FactKind::Side { human, .. }
-        | FactKind::Pace { human, .. }
-        | FactKind::Goal { human, .. }
-        | FactKind::MeetsAt { human, .. }
-        | FactKind::Facing { human, .. } => Some(*human),
-        FactKind::Asked { of } => {
-            if let Some(AgentId::Human(human)) = of {
-                Some(*human)
-            } else {
-                None
-            }
-        }
-        FactKind::Humans(_)
-        | FactKind::Before { .. }
-        | FactKind::Group { .. }
-        | FactKind::Relates { .. }
-        | FactKind::Place(_)
-        | FactKind::RobotTask(_)
-        | FactKind::RobotSays(_)
-        | FactKind::RobotDoes(_)
-        | FactKind::RobotStart(_)
-        | FactKind::RobotGoal(_)
-        | FactKind::RobotAt { .. }
-        | FactKind::Pattern(_) => None,
-    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ pub mod grid;
 pub mod location;
 pub mod place;
 
+pub mod act;
 pub mod behaviors;
 pub mod building;
 pub mod clause;
@@ -43,7 +44,7 @@ pub mod script;
 
 pub mod drive;
 pub mod driver;
-mod leaf;
+
 pub mod live;
 pub mod lockstep;
 mod onlooker;
@@ -65,9 +66,10 @@ pub mod words;
 
 pub use nalgebra;
 
+pub use act::Action;
 pub use behaviors::{Behaviors, HumanBehavior};
 pub use building::{BuildingBrief, BuildingKind, CorridorForm, RoomBrief, Unmet};
-pub use clause::{Clause, ClauseRole, Predicate};
+pub use clause::{Clause, ClauseRole, Predicate, Shows};
 pub use drive::{Command, Cues, Observation, RobotDriver, SeenDoor, SeenPerson, SeenRobot};
 pub use fault::{FailureClass, Family, Fault, FaultCode, Payload, Remedy, Where};
 pub use geometry::{Point, Pose, Vector};
@@ -91,7 +93,7 @@ pub use report::{ClauseResult, MetricValue, Missing, Report, Unit, Verdict};
 pub use request::{AuthorSpec, BadRequest, Breadth, Moment, Request, Seeds};
 pub use robot::{Kinematics, RobotModel};
 pub use role::Role;
-pub use rule::{Action, RobotRule, Rule, Trigger};
+pub use rule::{RobotRule, Rule, Trigger};
 pub use run::Run;
 pub use scenario::Scenario;
 pub use signature::Signature;

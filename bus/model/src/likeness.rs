@@ -18,7 +18,8 @@ use crate::paths::{Paths, Visit};
 use crate::proposal::{HumanProposal, Proposal, Relation};
 use approach::Approach;
 
-use crate::rule::{Action, RobotDo, RobotWhen, Rule, Trigger};
+use crate::act::Action;
+use crate::rule::{RobotDo, RobotWhen, Rule, Trigger};
 
 /// Places no farther apart than this are the same place, m.
 pub const ELSEWHERE_M: f64 = 3.0;

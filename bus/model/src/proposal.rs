@@ -3,11 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::act::Action;
 use crate::clause::{Clause, Predicate};
 use crate::gesture::Gesture;
 use crate::ids::{GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
-use crate::rule::{Action, RobotRule, Rule, Trigger};
+use crate::rule::{RobotRule, Rule, Trigger};
 
 /// How a human stands to the robot's way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -245,7 +246,7 @@ impl Proposal {
         let leaves = |rule: &Rule| {
             let off =
                 rule.when.iter().any(|trigger| trigger.distance_m().is_some() || matches!(trigger, Trigger::Did(..)));
-            off && matches!(rule.act, Action::TurnBack | Action::GoTo { .. })
+            off && matches!(rule.act, Action::TurnBack | Action::GoTo(_))
         };
         self.human(id).is_some_and(|human| human.rules.iter().any(leaves))
     }

@@ -162,6 +162,44 @@ pub enum FactKind {
     },
 }
 
+impl FactKind {
+    /// The human of whom alone it tells.
+    #[must_use]
+    pub const fn human(&self) -> Option<HumanId> {
+        match self {
+            Self::Asked { of: Some(AgentId::Human(human)) } => Some(*human),
+            Self::Reacts { human, .. }
+            | Self::Relates { human, .. }
+            | Self::Gestures { human, .. }
+            | Self::GesturesTo { human, .. }
+            | Self::MeetsTimes { human, .. }
+            | Self::MeetsAt { human, .. }
+            | Self::Side { human, .. }
+            | Self::Facing { human, .. }
+            | Self::Pace { human, .. }
+            | Self::Goal { human, .. } => Some(*human),
+            Self::Humans(_) | Self::Group { .. } | Self::Before { .. } | Self::Place(_) | Self::Asked { .. } => None,
+            Self::RobotTask(_) | Self::RobotSays(_) | Self::RobotDoes(_) | Self::Pattern(_) => None,
+            Self::RobotStart(_) | Self::RobotGoal(_) | Self::RobotAt { .. } => None,
+        }
+    }
+
+    /// Whether a clause of the setup has to show it. The rest is seen by others: how many there are and how they stand to the robot's way,
+    /// and what the robot is asked to do is its task or an outcome.
+    #[must_use]
+    pub const fn needs_clause(&self) -> bool {
+        match self {
+            Self::Humans(_) | Self::Relates { .. } | Self::Pattern(_) | Self::RobotTask(_) => false,
+            Self::RobotStart(_) | Self::RobotGoal(_) | Self::RobotAt { .. } => false,
+            Self::Asked { of } => !matches!(of, Some(AgentId::Robot)),
+            Self::Group { .. } | Self::Before { .. } | Self::Place(_) | Self::RobotSays(_) | Self::RobotDoes(_) => true,
+            Self::Reacts { .. } | Self::Gestures { .. } | Self::GesturesTo { .. } | Self::MeetsTimes { .. } => true,
+            Self::MeetsAt { .. } | Self::Side { .. } | Self::Facing { .. } | Self::Pace { .. } => true,
+            Self::Goal { .. } => true,
+        }
+    }
+}
+
 /// The reader of a request's texts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

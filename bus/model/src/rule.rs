@@ -3,153 +3,133 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::act::{self, Action};
 use crate::gesture::Gesture;
-use crate::ids::{AgentId, HumanId, NodeId};
+use crate::ids::{AgentId, HumanId};
 
-/// Something a human can notice. Distances are center to center, m.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Trigger {
+/// What is said of a trigger, whoever waits for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TriggerRow {
+    /// Its word in a form, and its tag in JSON: `robot_near`.
+    pub word: &'static str,
+    /// Its argument, as TOML and JSON write one; empty for a trigger without.
+    pub argument: &'static str,
+    /// What it means, for an author, where the word does not say so.
+    pub meaning: &'static str,
+}
+
+impl TriggerRow {
+    /// As a form writes it, in TOML: `{ robot_near = 2.0 }`.
+    #[must_use]
+    pub fn toml(&self) -> String {
+        act::toml(self.word, self.argument)
+    }
+
+    /// As an answer writes it, in JSON: `{"robot_near":2.0}`.
+    #[must_use]
+    pub fn json(&self) -> String {
+        act::json(self.word, self.argument)
+    }
+}
+
+/// The triggers: name, arguments, word, an argument as it is written, meaning.
+macro_rules! triggers {
+    ($($(#[$meta:meta])* $name:ident $(($($argument:ty),*))? = $word:literal $written:literal $meaning:literal;)*) => {
+        /// Something a human can notice. Distances are center to center, m. People are those of a run; a form names them in its own words.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case", deny_unknown_fields)]
+        pub enum Trigger<P = HumanId> {
+            $($(#[$meta])* $name $(($($argument),*))?,)*
+        }
+
+        /// Every trigger, in the order in which an author reads them.
+        pub const TRIGGERS: &[TriggerRow] =
+            &[$(TriggerRow { word: $word, argument: $written, meaning: $meaning }),*];
+
+        impl<P> Trigger<P> {
+            /// Its word in a form.
+            #[must_use]
+            pub const fn word(&self) -> &'static str {
+                match self {
+                    $(Self::$name { .. } => $word,)*
+                }
+            }
+        }
+    };
+}
+
+triggers! {
     /// Always, from the first tick.
-    Always,
+    Always = "always" "" "from the start";
     /// The robot is in the field of view, in line of sight and within this distance.
-    RobotVisible(f64),
+    RobotVisible(f64) = "robot_visible" "5.0" "seen within this distance, m, 0.3 to 15; never by those who walk ahead of it";
     /// The robot is within this distance, seen or not.
-    RobotNear(f64),
+    RobotNear(f64) = "robot_near" "2.0" "through walls too";
     /// The robot stands in the human's way within this distance.
-    RobotBlocking(f64),
+    RobotBlocking(f64) = "robot_blocking" "2.0" "near, and stands in their way";
     /// The robot moves.
-    RobotMoving,
+    RobotMoving = "robot_moving" "" "";
     /// The robot stands still.
-    RobotStopped,
-    /// The robot has been within [`Trigger::PASSED_WITHIN_M`] and is [`Trigger::PASSED_BY_M`] farther away again.
-    RobotPassed,
-    /// The robot makes this gesture.
-    RobotSays(Gesture),
-    /// Another human makes this gesture.
-    HumanSays(HumanId, Gesture),
-    /// The human is at the end of its path.
-    GoalReached,
-    /// The human is at the node where it meets the robot; of several, the first.
-    AtEncounter,
-    /// Time since the start of the run, s.
-    AfterSecs(f64),
+    RobotStopped = "robot_stopped" "" "";
     /// The robot has moved before and has stood for so many seconds.
-    StoppedFor(f64),
+    StoppedFor(f64) = "stopped_for" "3.0" "s";
+    /// The robot has been within [`Trigger::PASSED_WITHIN_M`] and is [`Trigger::PASSED_BY_M`] farther away again.
+    RobotPassed = "robot_passed" "" "was near and goes away again";
+    /// The robot makes this gesture.
+    RobotSays(Gesture) = "robot_says" "\"EXCUSE_ME\"" "";
+    /// Another human makes this gesture.
+    HumanSays(P, Gesture) = "human_says" "[\"human_2\", \"WAIT\"]" "";
     /// The step of this number, from 1, of a human's sequence has ended.
-    Did(HumanId, u32),
+    Did(P, u32) = "did" "[\"human_2\", 1]" "the first step of their `does` has ended";
     /// All steps of a human have ended. Somebody without steps is done at the end of their way, or once where they meet the robot is
     /// [`Trigger::DONE_M`] behind them.
-    Done(HumanId),
+    Done(P) = "done" "\"human_2\"" "all their steps have ended; without steps: they are past where they meet the robot";
+    /// The human is at the node where it meets the robot; of several, the first.
+    AtEncounter = "at_encounter" "" "they are where they meet the robot";
+    /// The human is at the end of its path.
+    GoalReached = "goal_reached" "" "they are at the end of their way";
+    /// Time since the start of the run, s.
+    AfterSecs(f64) = "after_secs" "10.0" "after the start of the run";
 }
 
-/// What a human can do. Exactly one motion at a time.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Action {
-    /// Walks on along the path.
-    #[default]
-    Navigate,
-    /// Follows the robot at 1 to 2 m.
-    FollowRobot,
-    /// Follows another human at 1 to 2 m.
-    FollowHuman(HumanId),
-    /// Hurries away from the robot.
-    RunAway,
-    /// Steps out of the robot's way and waits there.
-    GiveWay,
-    /// Goes and stays in front of the robot.
-    Block,
-    /// Stops and turns to the robot.
-    LookAtRobot,
-    /// Goes up to the robot, out of curiosity, and stops before it.
-    Approach,
-    /// Stands still.
-    StandStill,
-    /// Stops and turns to another human.
-    LookAt(HumanId),
-    /// Turns and walks back along the path to where it began.
-    TurnBack,
-    /// Leaves the path, goes to the nearest of some nodes, and stays there.
-    GoTo {
-        /// The place in words.
-        place: String,
-        /// Its nodes.
-        nodes: Vec<NodeId>,
-    },
-    /// Walks on along the path, from then on at this speed, m/s.
-    ChangePace(f64),
-    /// Steps out of the robot's way, and goes back to where they stood once it has passed.
-    MakeRoom,
-    /// Goes up to the robot as near as this, m, and keeps so near while it goes away.
-    ApproachTo(f64),
-}
-
-impl Action {
-    /// Largest distance beyond the asked one at which a person has come up to the robot, m.
-    pub const CLOSE_M: f64 = 0.15;
-
-    /// Whether it is done standing: as it is, or turned to the robot or to another human.
+impl<P> Trigger<P> {
+    /// The person for whom it waits.
     #[must_use]
-    pub const fn stands(&self) -> bool {
-        matches!(self, Self::StandStill | Self::LookAtRobot | Self::LookAt(_))
+    pub const fn names(&self) -> Option<&P> {
+        if let Self::HumanSays(id, _) | Self::Did(id, _) | Self::Done(id) = self { Some(id) } else { None }
     }
 
-    /// Whether it is one of those that only steps of a form have.
+    /// The distance from the robot at which it holds, m; `None` for triggers without one.
     #[must_use]
-    pub const fn is_of_steps(&self) -> bool {
-        matches!(
-            self,
-            Self::LookAt(_)
-                | Self::TurnBack
-                | Self::GoTo { .. }
-                | Self::ChangePace(_)
-                | Self::MakeRoom
-                | Self::ApproachTo(_)
-        )
+    pub const fn distance_m(&self) -> Option<f64> {
+        if let Self::RobotVisible(m) | Self::RobotNear(m) | Self::RobotBlocking(m) = self { Some(*m) } else { None }
     }
 
-    /// The action in words: `follows the robot`.
+    /// Its time, s; `None` for triggers without one.
     #[must_use]
-    pub fn phrase(&self) -> String {
+    pub const fn secs(&self) -> Option<f64> {
+        if let Self::AfterSecs(s) | Self::StoppedFor(s) = self { Some(*s) } else { None }
+    }
+
+    /// The same trigger with other people in the place of one; `people` gives nobody for a name without people, which leaves no trigger.
+    pub(crate) fn of_people<Q>(&self, people: impl Fn(&P) -> Vec<Q>) -> Vec<Trigger<Q>> {
+        let of = |person: &P, trigger: &dyn Fn(Q) -> Trigger<Q>| people(person).into_iter().map(trigger).collect();
         match self {
-            Self::Navigate => "walks on".to_owned(),
-            Self::FollowRobot => "follows the robot".to_owned(),
-            Self::FollowHuman(id) => format!("follows {id}"),
-            Self::RunAway => "runs away from the robot".to_owned(),
-            Self::GiveWay => "gives way to the robot".to_owned(),
-            Self::Block => "blocks the robot".to_owned(),
-            Self::LookAtRobot => "stops and looks at the robot".to_owned(),
-            Self::Approach => "comes up to the robot".to_owned(),
-            Self::StandStill => "stands still".to_owned(),
-            Self::LookAt(id) => format!("stops and looks at {id}"),
-            Self::TurnBack => "turns and walks back".to_owned(),
-            Self::GoTo { place, .. } => format!("goes to the {place}"),
-            Self::ChangePace(mps) => format!("walks on at {mps} m/s"),
-            Self::MakeRoom => "makes room for the robot and comes back".to_owned(),
-            Self::ApproachTo(m) => format!("comes up to the robot, as near as {m} m"),
-        }
-    }
-
-    /// What is done, after `they`: `run away from the robot`.
-    #[must_use]
-    pub fn they(&self) -> String {
-        match self {
-            Self::Navigate => "walk on".to_owned(),
-            Self::FollowRobot => "follow the robot".to_owned(),
-            Self::FollowHuman(id) => format!("follow {id}"),
-            Self::RunAway => "run away from the robot".to_owned(),
-            Self::GiveWay => "give way to the robot".to_owned(),
-            Self::Block => "block the robot".to_owned(),
-            Self::LookAtRobot => "stop and look at the robot".to_owned(),
-            Self::Approach => "come up to the robot".to_owned(),
-            Self::StandStill => "stand still".to_owned(),
-            Self::LookAt(id) => format!("stop and look at {id}"),
-            Self::TurnBack => "turn and walk back".to_owned(),
-            Self::GoTo { place, .. } => format!("go to the {place}"),
-            Self::ChangePace(mps) => format!("walk on at {mps} m/s"),
-            Self::MakeRoom => "make room for the robot and come back".to_owned(),
-            Self::ApproachTo(m) => format!("come up to the robot, as near as {m} m"),
+            Self::HumanSays(person, gesture) => return of(person, &|one| Trigger::HumanSays(one, *gesture)),
+            Self::Did(person, step) => return of(person, &|one| Trigger::Did(one, *step)),
+            Self::Done(person) => return of(person, &Trigger::Done),
+            Self::Always => vec![Trigger::Always],
+            Self::RobotVisible(m) => vec![Trigger::RobotVisible(*m)],
+            Self::RobotNear(m) => vec![Trigger::RobotNear(*m)],
+            Self::RobotBlocking(m) => vec![Trigger::RobotBlocking(*m)],
+            Self::RobotMoving => vec![Trigger::RobotMoving],
+            Self::RobotStopped => vec![Trigger::RobotStopped],
+            Self::RobotPassed => vec![Trigger::RobotPassed],
+            Self::RobotSays(gesture) => vec![Trigger::RobotSays(*gesture)],
+            Self::GoalReached => vec![Trigger::GoalReached],
+            Self::AtEncounter => vec![Trigger::AtEncounter],
+            Self::AfterSecs(s) => vec![Trigger::AfterSecs(*s)],
+            Self::StoppedFor(s) => vec![Trigger::StoppedFor(*s)],
         }
     }
 }
@@ -171,65 +151,22 @@ impl Trigger {
     /// The agent that has to make a gesture for it, and which; `None` for triggers that wait for no gesture.
     #[must_use]
     pub const fn awaits(&self) -> Option<(AgentId, Gesture)> {
-        match self {
-            Self::RobotSays(gesture) => Some((AgentId::Robot, *gesture)),
-            Self::HumanSays(id, gesture) => Some((AgentId::Human(*id), *gesture)),
-            Self::Always
-            | Self::RobotVisible(_)
-            | Self::RobotNear(_)
-            | Self::RobotBlocking(_)
-            | Self::RobotMoving
-            | Self::RobotStopped
-            | Self::RobotPassed
-            | Self::GoalReached
-            | Self::AtEncounter
-            | Self::AfterSecs(_)
-            | Self::StoppedFor(_)
-            | Self::Did(..)
-            | Self::Done(_) => None,
-        }
-    }
-
-    /// The distance from the robot at which it holds, m; `None` for triggers without one.
-    #[must_use]
-    pub const fn distance_m(&self) -> Option<f64> {
-        match self {
-            Self::RobotVisible(m) | Self::RobotNear(m) | Self::RobotBlocking(m) => Some(*m),
-            Self::Always
-            | Self::RobotMoving
-            | Self::RobotStopped
-            | Self::RobotPassed
-            | Self::RobotSays(_)
-            | Self::HumanSays(..)
-            | Self::GoalReached
-            | Self::AtEncounter
-            | Self::AfterSecs(_)
-            | Self::StoppedFor(_)
-            | Self::Did(..)
-            | Self::Done(_) => None,
+        if let Self::RobotSays(gesture) = self {
+            Some((AgentId::Robot, *gesture))
+        } else if let Self::HumanSays(id, gesture) = self {
+            Some((AgentId::Human(*id), *gesture))
+        } else {
+            None
         }
     }
 
     /// The same trigger at another distance from the robot, m; one without a distance stays as it is.
     #[must_use]
-    pub const fn at_distance(self, distance_m: f64) -> Self {
-        match self {
-            Self::RobotVisible(_) => Self::RobotVisible(distance_m),
-            Self::RobotNear(_) => Self::RobotNear(distance_m),
-            Self::RobotBlocking(_) => Self::RobotBlocking(distance_m),
-            Self::Always
-            | Self::RobotMoving
-            | Self::RobotStopped
-            | Self::RobotPassed
-            | Self::RobotSays(_)
-            | Self::HumanSays(..)
-            | Self::GoalReached
-            | Self::AtEncounter
-            | Self::AfterSecs(_)
-            | Self::StoppedFor(_)
-            | Self::Did(..)
-            | Self::Done(_) => self,
+    pub const fn at_distance(mut self, distance_m: f64) -> Self {
+        if let Self::RobotVisible(m) | Self::RobotNear(m) | Self::RobotBlocking(m) = &mut self {
+            *m = distance_m;
         }
+        self
     }
 
     /// Whether the other one holds whenever this one does: `robot_near:2` implies `robot_near:3`.
@@ -248,26 +185,17 @@ impl Trigger {
     /// What holds, as a clause: `the robot is within 2 m`.
     #[must_use]
     pub fn clause(&self) -> String {
-        match self {
-            Self::Always => "at once".to_owned(),
-            Self::GoalReached => "they are at their goal".to_owned(),
-            Self::AtEncounter => "they are at the encounter".to_owned(),
-            Self::AfterSecs(s) => format!("{s} s have passed"),
-            Self::RobotVisible(_)
-            | Self::RobotNear(_)
-            | Self::RobotBlocking(_)
-            | Self::RobotMoving
-            | Self::RobotStopped
-            | Self::RobotPassed
-            | Self::RobotSays(_)
-            | Self::HumanSays(..)
-            | Self::StoppedFor(_)
-            | Self::Did(..)
-            | Self::Done(_) => {
-                let phrase = self.phrase();
-                phrase.split_once(' ').map_or_else(|| phrase.clone(), |(_, rest)| rest.to_owned())
-            }
+        if let Self::AfterSecs(s) = self {
+            return format!("{s} s have passed");
         }
+        let own = [
+            (Self::Always, "at once"),
+            (Self::GoalReached, "they are at their goal"),
+            (Self::AtEncounter, "they are at the encounter"),
+        ];
+        let phrase = self.phrase();
+        let known = own.iter().find(|(trigger, _)| trigger == self).map(|(_, words)| *words);
+        known.or_else(|| phrase.split_once(' ').map(|(_, rest)| rest)).unwrap_or(&phrase).to_owned()
     }
 
     /// The trigger in words: `when they see the robot within 5 m`.

@@ -1,6 +1,7 @@
 //! What the script of the report page plays and lists, as JSON.
 
 use serde_json::{Value, json};
+use socrates_model::act::{ACTS, Takes};
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::{Action, ClauseRole, Event, EventKind, Location, Point, Reading, Recording, Report};
 
@@ -115,17 +116,20 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
 
 /// Whether whoever runs a leaf of this tag does something about the robot.
 pub(crate) fn reacts(tag: &str) -> bool {
-    Action::of_tag(tag).is_some_and(|action| !matches!(action, Action::Navigate | Action::StandStill))
+    let quiet = [Action::Navigate, Action::StandStill].map(|act: Action| act.row().leaf);
+    ACTS.iter().any(|act| act.leaf == tag && !quiet.contains(&tag))
 }
 
 /// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `runs stand up` for `StandUp`.
 fn spoken(tag: &str) -> String {
-    match Action::of_tag(tag) {
-        Some(action) => action.phrase(),
+    if tag == DRIVEN_LEAF {
+        return "is moved by a driver outside".to_owned();
+    }
+    match ACTS.iter().find(|act| act.leaf == tag).map(|act| (act.takes, act.does)) {
+        Some((Takes::Nothing, does)) => does.to_owned(),
         // The tag does not say whom.
-        None if tag == "FollowHuman" => "follows another human".to_owned(),
-        None if tag == DRIVEN_LEAF => "is moved by a driver outside".to_owned(),
-        None => format!("runs {}", parted(tag)),
+        Some((Takes::Person, does)) => does.replace("{}", "another human"),
+        Some((Takes::Place | Takes::Pace | Takes::Meters, _)) | None => format!("runs {}", parted(tag)),
     }
 }
 

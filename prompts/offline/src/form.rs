@@ -100,8 +100,8 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
         let does = human.does.iter().enumerate().map(|(place, step)| (step, "does", place == 0));
         for (rule, (step, key, first)) in person.rules.iter().zip(steps.chain(does)) {
             let rule = &bound_to(rule, step, location);
-            if let Action::GoTo { nodes, .. } = &rule.act
-                && nodes.is_empty()
+            if let Action::GoTo(to) = &rule.act
+                && to.nodes.is_empty()
                 && let Some(Deed::GoTo(place)) = &step.act
             {
                 story.problems.push(no_place("human.does.act", place, location));
@@ -139,12 +139,12 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
 /// The rule with the nodes of the place that it names.
 fn bound_to(rule: &Rule, step: &Step, location: &Location) -> Rule {
     let mut rule = rule.clone();
-    if let (Action::GoTo { nodes, .. }, Some(Deed::GoTo(place))) = (&mut rule.act, &step.act)
+    if let (Action::GoTo(to), Some(Deed::GoTo(place))) = (&mut rule.act, &step.act)
         && let Some(found) = bound(place, location)
     {
         let all = location.graph.nodes().iter().map(|node| &node.id);
         let class = || all.filter(|id| location.graph.node_is(id, found.class)).cloned().collect();
-        *nodes = if found.nodes.is_empty() { class() } else { found.nodes };
+        to.nodes = if found.nodes.is_empty() { class() } else { found.nodes };
     }
     rule
 }

@@ -22,25 +22,18 @@ const fn step_m(relation: Relation) -> f64 {
 
 /// The usual distance at which something is done, and the nearest and farthest that are natural, m; nothing for what does not depend on
 /// a moment. The usual ones are those of `deed.rs` and `timing.rs`; nobody makes way or stops so far off that the two no longer meet.
-const fn reach_m(act: &Action, gesture: Option<Gesture>) -> Option<(f64, [f64; 2])> {
-    match act {
-        Action::RunAway => Some((3.0, [2.0, 5.4])),
-        Action::GiveWay => Some((3.5, [2.5, 5.9])),
-        Action::Block => Some((4.0, [2.5, 5.9])),
-        Action::LookAtRobot => Some((4.0, [2.5, 7.6])),
-        Action::Approach => Some((5.0, [3.3, 8.4])),
-        Action::StandStill => Some((3.0, [2.5, 5.9])),
-        Action::Navigate if gesture.is_some() => Some((5.0, [2.5, 9.3])),
-        Action::Navigate
-        | Action::FollowRobot
-        | Action::FollowHuman(_)
-        | Action::LookAt(_)
-        | Action::TurnBack
-        | Action::MakeRoom
-        | Action::ApproachTo(_)
-        | Action::GoTo { .. }
-        | Action::ChangePace(_) => None,
-    }
+fn reach_m(act: &Action, gesture: Option<Gesture>) -> Option<(f64, [f64; 2])> {
+    let signs = gesture.is_some();
+    let all = [
+        (Action::RunAway, (3.0, [2.0, 5.4])),
+        (Action::GiveWay, (3.5, [2.5, 5.9])),
+        (Action::Block, (4.0, [2.5, 5.9])),
+        (Action::LookAtRobot, (4.0, [2.5, 7.6])),
+        (Action::Approach, (5.0, [3.3, 8.4])),
+        (Action::StandStill, (3.0, [2.5, 5.9])),
+        (Action::Navigate, (5.0, [2.5, 9.3])),
+    ];
+    all.into_iter().find(|(own, _)| own == act && (signs || *own != Action::Navigate)).map(|(_, reach)| reach)
 }
 
 /// The rules of a person with distances by the draw; `open` tells for each whether the text leaves its distance open. What is done one

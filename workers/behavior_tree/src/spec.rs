@@ -204,7 +204,7 @@ fn end(rule: &Rule) -> Option<NodeSpec> {
     let timer = rule.for_s.map(|secs| NodeSpec::new("TimeExpiredCondition").port("seconds", secs));
     let Some(number) = rule.step else { return timer };
     // Somebody who goes back, or to another place, is at the end of their path before.
-    let leads = matches!(rule.act, Action::TurnBack | Action::GoTo { .. });
+    let leads = matches!(rule.act, Action::TurnBack | Action::GoTo(_));
     // A robot that passed before the step began does not end it.
     let ends = |trigger: &Trigger| {
         if leads && *trigger == Trigger::GoalReached {
@@ -255,26 +255,19 @@ fn condition(trigger: &Trigger) -> Option<NodeSpec> {
 }
 
 fn motion(action: &Action) -> NodeSpec {
-    NodeSpec::new(match action {
-        Action::Navigate => WALK,
-        Action::FollowHuman(id) => return NodeSpec::new("FollowHuman").port("target_id", id.number()),
-        Action::FollowRobot => "FollowRobot",
-        Action::RunAway => "RunAwayFromRobot",
-        Action::GiveWay => "GiveWaytoRobot",
-        Action::Block => "BlockRobot",
-        Action::LookAtRobot => "LookAtRobot",
-        Action::Approach => "ApproachRobot",
-        Action::StandStill => "StandStill",
-        Action::LookAt(id) => return NodeSpec::new("WatchHuman").port("target_id", id.number()),
-        Action::TurnBack => "TurnBack",
-        Action::GoTo { place, nodes } => {
-            let nodes: Vec<&str> = nodes.iter().map(socrates_model::NodeId::as_str).collect();
-            return NodeSpec::new("GoToPlace").port("place", place).port("nodes", nodes.join(","));
-        }
-        Action::ChangePace(mps) => return NodeSpec::new("ChangePace").port("speed", mps),
-        Action::MakeRoom => "MakeRoom",
-        Action::ApproachTo(m) => return NodeSpec::new("ComeClose").port("distance", m),
-    })
+    let node = NodeSpec::new(if *action == Action::Navigate { WALK } else { action.row().leaf });
+    if let Some(id) = action.names() {
+        node.port("target_id", id.number())
+    } else if let Action::GoTo(to) = action {
+        let nodes: Vec<&str> = to.nodes.iter().map(socrates_model::NodeId::as_str).collect();
+        node.port("place", &to.place).port("nodes", nodes.join(","))
+    } else if let Action::ChangePace(mps) = action {
+        node.port("speed", mps)
+    } else if let Action::ApproachTo(m) = action {
+        node.port("distance", m)
+    } else {
+        node
+    }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use socrates_model::act::{ACTS, Takes};
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::Standing;
 use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, HumanId};
@@ -115,22 +116,10 @@ fn leader(signals: &Signals<'_>, human: HumanId) -> String {
 
 /// What a leaf does, in words.
 fn phrase(leaf: &str) -> Option<String> {
-    let plain = [
-        Action::FollowRobot,
-        Action::RunAway,
-        Action::GiveWay,
-        Action::Block,
-        Action::LookAtRobot,
-        Action::Approach,
-        Action::StandStill,
-        Action::Navigate,
-        Action::TurnBack,
-        Action::MakeRoom,
-    ];
     if leaf.is_empty() {
         return None;
     }
-    plain.iter().find(|action| action.is_leaf(leaf)).map(Action::phrase)
+    ACTS.iter().rev().find(|act| act.takes == Takes::Nothing && act.is_leaf(leaf)).map(|act| act.does.to_owned())
 }
 
 /// Stops of the robot before it is at its goal, with who is nearest ahead.

@@ -4,12 +4,11 @@ use socrates_model::job::Stage;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::report::{Repair, Standing};
 use socrates_model::{
-    Action, AgentId, Clause, EventKind, Fault, FaultCode, HumanId, Predicate, Trigger, Verdict, Where,
+    Action, AgentId, Clause, EventKind, Fault, FaultCode, HumanId, Predicate, Shows, Trigger, Verdict, Where,
 };
 
 use crate::evidence::Evidence;
 use crate::fidelity::{Finding, Judged, Missed};
-use crate::score::is_meeting;
 use crate::tracks::TrackFault;
 
 /// The repair a verdict asks for, if it is the scenario's fault; what came late could come in time. Only the run with the reference
@@ -90,7 +89,7 @@ fn left_by_rule(evidence: &Evidence<'_>, clause: &Clause, by_s: f64) -> Option<(
     let group = proposal.groups.iter().find(|group| clause.predicate.group() == Some(group.id))?;
     let own = |human: HumanId, leaf: &str| {
         let rules = proposal.human(human).into_iter().flat_map(|human| &human.rules);
-        rules.map(|rule| &rule.act).find(|act| leads_away(act) && act.is_leaf(leaf)).cloned()
+        rules.map(|rule| &rule.act).find(|act| act.row().leads_away && act.is_leaf(leaf)).cloned()
     };
     evidence.recording.events.iter().find_map(|event| {
         let EventKind::Leaf { human, leaf } = &event.kind else { return None };
@@ -101,27 +100,6 @@ fn left_by_rule(evidence: &Evidence<'_>, clause: &Clause, by_s: f64) -> Option<(
 
 /// Time after which a group that somebody leaves is seen to be broken at the latest, s.
 const LEAVES_S: f64 = 1.0;
-
-/// Whether an action leads a person away from where they stand.
-const fn leads_away(act: &Action) -> bool {
-    match act {
-        Action::RunAway
-        | Action::FollowRobot
-        | Action::FollowHuman(_)
-        | Action::GiveWay
-        | Action::Block
-        | Action::Approach
-        | Action::ApproachTo(_)
-        | Action::TurnBack
-        | Action::GoTo { .. } => true,
-        Action::Navigate
-        | Action::LookAtRobot
-        | Action::LookAt(_)
-        | Action::StandStill
-        | Action::ChangePace(_)
-        | Action::MakeRoom => false,
-    }
-}
 
 /// What is wrong with a clause that was missed. Of an order, what is wrong with the part that was never seen: nothing of its own where that
 /// part decides as well, since it is told of itself then. Where both parts came the other way round, whoever wrote what people do can mend
@@ -190,77 +168,21 @@ fn elsewhere(missed: &Missed) -> Option<Stage> {
     }
 }
 
-/// Code and stage of a clause by what it tests.
+/// Code and stage of a clause by what it shows.
 fn by_predicate(clause: &Clause, finding: &Finding, ruled: bool) -> (FaultCode, Stage) {
-    match &clause.predicate {
-        _ if finding.early => (FaultCode::DEarly, Stage::Behaviors),
-        predicate if is_meeting(predicate) => (FaultCode::DNoMeet, Stage::Paths),
+    if finding.early {
+        return (FaultCode::DEarly, Stage::Behaviors);
+    }
+    match clause.predicate.shows() {
+        Shows::Meeting => (FaultCode::DNoMeet, Stage::Paths),
         // A human who was never near could not act: that is for the paths.
-        Predicate::Blocks { .. }
-        | Predicate::Looks { .. }
-        | Predicate::RunsAway { .. }
-        | Predicate::GivesWay { .. }
-        | Predicate::MakesRoom { .. }
-        | Predicate::Follows { .. }
-            if finding.standing == Standing::NotTriggered && (finding.missed.is_some() || !ruled) =>
-        {
+        Shows::Deed if finding.standing == Standing::NotTriggered && (finding.missed.is_some() || !ruled) => {
             (FaultCode::DNoMeet, Stage::Paths)
         }
-        Predicate::Reacts { .. }
-        | Predicate::Step { .. }
-        | Predicate::TurnsBack { .. }
-        | Predicate::GoesTo { .. }
-        | Predicate::ChangesPace { .. }
-        | Predicate::Blocks { .. }
-        | Predicate::Looks { .. }
-        | Predicate::StandsStill { .. }
-        | Predicate::RunsAway { .. }
-        | Predicate::GivesWay { .. }
-        | Predicate::MakesRoom { .. }
-        | Predicate::Follows { .. }
-        | Predicate::Abreast { .. } => (FaultCode::DNoTrig, Stage::Behaviors),
-        Predicate::Gestures { .. } | Predicate::GesturesTo { .. } => (FaultCode::DNoGest, Stage::Behaviors),
-        Predicate::StaysAside { .. }
-        | Predicate::Formation { .. }
-        | Predicate::WalksTogether { .. }
-        | Predicate::Queues { .. } => (FaultCode::DGroup, Stage::Paths),
-        Predicate::Plausible => (FaultCode::DPen, Stage::Paths),
-        Predicate::Humans { .. }
-        | Predicate::Meets { .. }
-        | Predicate::MeetsAgain { .. }
-        | Predicate::HeadOn { .. }
-        | Predicate::OnSide { .. }
-        | Predicate::Faces { .. }
-        | Predicate::RobotWay { .. }
-        | Predicate::RobotStep { .. }
-        | Predicate::Walks { .. }
-        | Predicate::GetsTo { .. }
-        | Predicate::Crosses { .. }
-        | Predicate::Ahead { .. }
-        | Predicate::Overtakes { .. }
-        | Predicate::RobotPasses { .. }
-        | Predicate::Leaves { .. }
-        | Predicate::StaysInside { .. }
-        | Predicate::Enters { .. }
-        | Predicate::Parallel { .. }
-        | Predicate::Flow { .. }
-        | Predicate::Density { .. }
-        | Predicate::Surrounds { .. }
-        | Predicate::Converges { .. }
-        | Predicate::DoorOpens { .. }
-        | Predicate::HiddenUntil { .. }
-        | Predicate::Order { .. }
-        | Predicate::Before { .. }
-        | Predicate::EncounterAt { .. }
-        | Predicate::Reaches { .. }
-        | Predicate::StartsAt { .. }
-        | Predicate::OnTime { .. }
-        | Predicate::RobotArrives
-        | Predicate::RobotKeeps { .. }
-        | Predicate::RobotEntersLast
-        | Predicate::RobotLeavesFirst
-        | Predicate::RobotJoins { .. }
-        | Predicate::RobotLeavesGroup { .. }
-        | Predicate::RobotObeys { .. } => (FaultCode::DSetup, Stage::Paths),
+        Shows::Deed | Shows::Act => (FaultCode::DNoTrig, Stage::Behaviors),
+        Shows::Sign => (FaultCode::DNoGest, Stage::Behaviors),
+        Shows::Company => (FaultCode::DGroup, Stage::Paths),
+        Shows::Bodies => (FaultCode::DPen, Stage::Paths),
+        Shows::Course | Shows::Result => (FaultCode::DSetup, Stage::Paths),
     }
 }

@@ -1,6 +1,6 @@
 //! Evidence in, report out.
 
-use socrates_model::{FORMAT, Predicate, Report, Verdict};
+use socrates_model::{FORMAT, Report, Verdict};
 
 use crate::evidence::Evidence;
 use crate::fidelity::{Signals, by_name, encounter_gaps, judge, rule, ruling_of_played};
@@ -72,10 +72,4 @@ pub fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
     let signals = Signals::new(evidence, &tracks);
     let judged = judge(&signals);
     Ok(ruling_of_played(evidence, &judged, &encounter_gaps(&signals), None).verdict)
-}
-
-/// Whether a predicate tells of a meeting that the paths must make.
-#[must_use]
-pub(crate) const fn is_meeting(predicate: &Predicate) -> bool {
-    matches!(predicate, Predicate::Meets { .. } | Predicate::MeetsAgain { .. })
 }

@@ -107,6 +107,8 @@ pub enum PaceWord {
 }
 
 impl Pace {
+    /// What a number may be, m/s.
+    pub(crate) const MPS: [f64; 2] = [0.2, 1.8];
     /// What a number may be, and the words.
     pub const ALLOWED: &str = "\"slow\", \"normal\", \"brisk\", or 0.2 to 1.8 (m/s)";
 

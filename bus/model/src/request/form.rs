@@ -17,8 +17,13 @@ const HUMAN_KEYS: [&str; 13] =
     ["id", "count", "role", "relation", "side", "facing", "place", "start", "goal", "pace", "group", "does", "reacts"];
 const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast, aside";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
-const MOMENTS: Words = Words { what: "moment", all: RobotMoment::WORDS, more: "" };
-const DEEDS: Words = Words { what: "deed of the robot", all: RobotDeed::WORDS, more: "" };
+fn moments() -> Words {
+    Words::of_table("moment", RobotMoment::WORDS)
+}
+
+fn deeds() -> Words {
+    Words::of_table("deed of the robot", RobotDeed::WORDS)
+}
 /// People of one `[[human]]`.
 const MOST_ALIKE: u32 = 30;
 /// Characters of a name, a role or a place.
@@ -242,7 +247,7 @@ impl Door<'_> {
                 continue;
             }
             let when = section.get("when").and_then(|node| {
-                let moment = self.word_of::<RobotMoment>("robot.does.when", node, &MOMENTS)?;
+                let moment = self.word_of::<RobotMoment>("robot.does.when", node, &moments())?;
                 self.number("robot.does.when", node, moment.number());
                 Some(moment)
             });
@@ -271,11 +276,11 @@ impl Door<'_> {
     fn robot_deed(&mut self, key: &str, value: &Node) -> Option<RobotDeed> {
         if key == "hold_until" {
             // A moment of its own, with its own words.
-            return self.word_of::<RobotMoment>("robot.does.hold_until", value, &MOMENTS).map(RobotDeed::HoldUntil);
+            return self.word_of::<RobotMoment>("robot.does.hold_until", value, &moments()).map(RobotDeed::HoldUntil);
         }
         let entry = (key.to_owned(), value.at, value.clone());
         let node = Node { at: value.at, kind: Kind::Table(vec![entry]) };
-        self.word_of(&format!("robot.does.{key}"), &node, &DEEDS)
+        self.word_of(&format!("robot.does.{key}"), &node, &deeds())
     }
 
     /// What is wrong with names: two people or groups of one name, groups that are too small, too many people.

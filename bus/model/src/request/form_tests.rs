@@ -1,5 +1,6 @@
 //! What the door says of forms: everything at once, with line, key, value and what is allowed.
 
+use crate::act::Target;
 use crate::form::{Deed, Form, PlaceWord, When};
 use crate::proposal::Relation;
 use crate::{Action, AgentId, GroupId, HumanId, PlaceClass, Request, Trigger};
@@ -216,7 +217,7 @@ fn a_list_of_words_is_named_in_full_once() {
 fn a_sign_is_made_to_somebody_and_an_act_changes_the_way() {
     let form = form(
         "[[human]]\nid = \"guard\"\nrelation = \"static\"\ndoes = [{ when = { robot_near = 4 }, say = \"WAIT\", to = \"visitor\" }]\n\
-         [[human]]\nid = \"visitor\"\nrelation = \"frontal\"\ndoes = [{ act = \"change_pace\", pace = \"slow\" },\n\
+         [[human]]\nid = \"visitor\"\nrelation = \"frontal\"\ndoes = [{ act = { change_pace = \"slow\" } },\n\
          { when = { human_says = [\"guard\", \"WAIT\"] }, act = { look_at = \"guard\" }, for_s = 2 }, { act = \"turn_back\" },\n\
          { act = { go_to = \"ward 2\" } }]\n",
     );
@@ -227,7 +228,7 @@ fn a_sign_is_made_to_somebody_and_an_act_changes_the_way() {
         (Some(AgentId::Human(visitor)), &Action::LookAt(visitor))
     );
     let acts: Vec<&Action> = people[1].rules.iter().map(|rule| &rule.act).collect();
-    let place = Action::GoTo { place: "ward 2".into(), nodes: Vec::new() };
+    let place = Action::GoTo(Target { place: "ward 2".into(), nodes: Vec::new() });
     assert_eq!(acts, [&Action::ChangePace(0.6), &Action::LookAt(guard), &Action::TurnBack, &place]);
     assert_eq!((people[1].rules[0].for_s, &people[1].rules[2].until[..]), (Some(1.0), &[Trigger::GoalReached][..]));
 }
@@ -237,7 +238,7 @@ fn a_bystander_a_group_that_opens_and_how_near_somebody_comes_are_stated() {
     let form = form(
         "[[human]]\nrelation = \"aside\"\nside = \"left\"\nfacing = \"robot\"\n\
          [[human]]\nrelation = \"static\"\ndoes = [{ when = { robot_says = \"EXCUSE_ME\" }, act = \"make_room\" }]\n\
-         [[human]]\nrelation = \"frontal\"\ndoes = [{ when = { robot_near = 4 }, act = \"approach\", near_m = 0.8, for_s = 3 }]\n",
+         [[human]]\nrelation = \"frontal\"\ndoes = [{ when = { robot_near = 4 }, act = { approach_to = 0.8 }, for_s = 3 }]\n",
     );
     let people = form.people();
     assert_eq!(people[0].human.relation, Relation::Aside);
@@ -255,9 +256,9 @@ fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
         ("does = [{ say = \"WAIT\", to = \"a\" }]\n", "`human.does`: is done to themselves"),
         ("does = [{ say = \"WAITT\" }]\n", "`WAITT` is no sign (nearest: WAIT; signs: WAIT, PROCEED"),
         ("does = [{ act = \"turn_back\" }]\n", "`human.does.act`: walks, but stands by its relation"),
-        ("does = [{ act = \"change_pace\" }]\n", "`human.does.pace`: is missing for change_pace"),
-        ("does = [{ act = \"approach\", near_m = 0.2 }]\n", "`human.does.near_m`: 0.2 m is out of range"),
-        ("does = [{ act = \"block\", near_m = 1.0 }]\n", "`human.does.near_m`: belongs to act = \"approach\""),
+        ("does = [{ act = \"change_pace\" }]\n", "write { change_pace = \"slow\" }"),
+        ("does = [{ act = { approach_to = 0.2 } }]\n", "`human.does.act`: 0.2 m is out of range"),
+        ("does = [{ act = { change_pace = 3.0 } }]\n", "`human.does.act`: 3 m/s is out of range"),
         (
             "[[human]]\nrelation = \"frontal\"\ndoes = [{ act = \"make_room\" }]\n",
             "`human.does.act`: makes room, but walks by its relation",

@@ -4,30 +4,30 @@ use super::form::{Names, Naming};
 use super::read::{Door, GESTURES, Section};
 use super::tree::{Kind, Node, TextPlace};
 use super::words::Words;
-use crate::form::{Deed, Form, FormHuman, Pace, Step, When};
+use crate::act::ACTS;
+use crate::form::{Deed, Form, FormHuman, Step, When};
 use crate::gesture::Gesture;
+use crate::rule::TRIGGERS;
 
-const STEP_KEYS: [&str; 8] = ["when", "act", "for_s", "until", "say", "to", "pace", "near_m"];
-/// How near somebody may come up to the robot, m: bodies touch at 0.55 m.
-const NEAR_M: [f64; 2] = [0.7, 2.0];
+const STEP_KEYS: [&str; 6] = ["when", "act", "for_s", "until", "say", "to"];
 /// Steps of `does`, and of `reacts`.
 const MOST_STEPS: usize = 12;
 /// Longest time of a step, s.
 const MOST_S: f64 = 600.0;
 
-const TRIGGERS: Words = Words { what: "trigger", all: When::WORDS, more: ", or a list of them" };
-const SIGNS: Words = Words {
-    what: "sign",
-    all: &[
-        ("WAIT", "WAIT"),
-        ("PROCEED", "PROCEED"),
-        ("ACKNOWLEDGED", "ACKNOWLEDGED"),
-        ("EXCUSE_ME", "EXCUSE_ME"),
-        ("FOLLOW_ME", "FOLLOW_ME"),
-    ],
-    more: "",
-};
-const ACTS: Words = Words { what: "act", all: Deed::WORDS, more: "" };
+fn triggers() -> Words {
+    let all = TRIGGERS.iter().map(|row| (row.word, row.toml())).collect();
+    Words { what: "trigger", all, more: ", or a list of them" }
+}
+
+fn signs() -> Words {
+    let all = Gesture::ALL.iter().map(|sign| (sign.name(), sign.name().to_owned())).collect();
+    Words { what: "sign", all, more: "" }
+}
+
+fn acts() -> Words {
+    Words { what: "act", all: ACTS.iter().map(|row| (row.word, row.toml())).collect(), more: "" }
+}
 
 impl Door<'_> {
     /// The steps of `does` or `reacts`.
@@ -71,16 +71,20 @@ impl Door<'_> {
         }
         let when = self.whens(&section, "when", names);
         let until = self.whens(&section, "until", names);
-        let act = section.get("act").and_then(|node| self.word_of::<Deed>(&section.key("act"), node, &ACTS));
-        if let Some((name, key)) = act.as_ref().and_then(Deed::names) {
-            names.push(Naming { who: name.clone(), key, node: section.get("act"), robot: false, several: false });
+        let act = section.get("act").and_then(|node| self.word_of::<Deed>(&section.key("act"), node, &acts()));
+        if let (Some(act), Some(node)) = (&act, section.get("act")) {
+            self.number(&section.key("act"), node, act.number());
+            if let Some(name) = act.names() {
+                let key = act.row().word;
+                names.push(Naming { who: name.clone(), key, node: Some(node), robot: false, several: false });
+            }
         }
         let for_s = self.maybe::<f64>(&section, "for_s", "0.1 to 600 (s)");
         if let Some(secs) = for_s.filter(|secs| !(0.1..=MOST_S).contains(secs)) {
             let at = section.get("for_s").and_then(|node| node.at);
             self.bad(section.key("for_s"), at, format!("{secs} s is out of range"), "0.1 to 600 (s)");
         }
-        let say = section.get("say").and_then(|node| self.word_of::<Gesture>(&section.key("say"), node, &SIGNS));
+        let say = section.get("say").and_then(|node| self.word_of::<Gesture>(&section.key("say"), node, &signs()));
         if section.get("act").is_none() && section.get("say").is_none() {
             self.bad(
                 path.trim_end_matches('.'),
@@ -90,9 +94,7 @@ impl Door<'_> {
             );
         }
         let to = self.to(&section, say.is_some(), names);
-        let pace = self.step_pace(&section, act.as_ref());
-        let near_m = self.step_near(&section, act.as_ref());
-        Some(Step { when, act, for_s, until, say, to, pace, near_m })
+        Some(Step { when, act, for_s, until, say, to })
     }
 
     /// To whom a sign is made.
@@ -108,48 +110,16 @@ impl Door<'_> {
         Some(to)
     }
 
-    /// The pace of `change_pace`, which needs one; no other act has it.
-    fn step_pace(&mut self, section: &Section<'_>, act: Option<&Deed>) -> Option<Pace> {
-        let changes = act == Some(&Deed::ChangePace);
-        let pace = self.maybe::<Pace>(section, "pace", Pace::ALLOWED);
-        let at = section.get("pace").or_else(|| section.get("act")).and_then(|node| node.at);
-        if changes && section.get("pace").is_none() {
-            self.bad(section.key("pace"), at, "is missing for change_pace", Pace::ALLOWED);
-        } else if !changes && section.get("pace").is_some() {
-            self.bad(
-                section.key("pace"),
-                at,
-                "belongs to act = \"change_pace\"",
-                "the pace from the start on stands in [[human]]",
-            );
-        }
-        if let Some(mps) = pace.and_then(Pace::mps).filter(|mps| !(0.2..=1.8).contains(mps)) {
-            self.bad(section.key("pace"), at, format!("{mps} m/s is out of range"), Pace::ALLOWED);
-        }
-        pace
-    }
-
-    /// How near `approach` comes; no other act has it.
-    fn step_near(&mut self, section: &Section<'_>, act: Option<&Deed>) -> Option<f64> {
-        let near_m = self.maybe::<f64>(section, "near_m", "0.7 to 2 (m)")?;
-        let node = section.get("near_m")?;
-        if act != Some(&Deed::Approach) {
-            self.bad(section.key("near_m"), node.at, "belongs to act = \"approach\"", "leave it out");
-        }
-        self.number(&section.key("near_m"), node, Some((near_m, NEAR_M, "m")));
-        Some(near_m)
-    }
-
     fn whens<'n>(&mut self, section: &Section<'n>, key: &'static str, names: &mut Names<'n>) -> Vec<When> {
         let Some(node) = section.get(key) else { return Vec::new() };
         let nodes: Vec<&Node> = if let Kind::List(nodes) = &node.kind { nodes.iter().collect() } else { vec![node] };
         let mut found = Vec::new();
         for node in nodes {
-            let Some(when) = self.word_of::<When>(&section.key(key), node, &TRIGGERS) else { continue };
+            let Some(when) = self.word_of::<When>(&section.key(key), node, &triggers()) else { continue };
             self.number(&section.key(key), node, when.number());
-            if let Some((name, what)) = when.names() {
+            if let Some(name) = when.names() {
                 let several = matches!(when, When::Done(_));
-                names.push(Naming { who: name.clone(), key: what, node: Some(node), robot: false, several });
+                names.push(Naming { who: name.clone(), key: when.word(), node: Some(node), robot: false, several });
             }
             found.push(when);
         }
@@ -166,7 +136,7 @@ impl Door<'_> {
             let stands = human.relation.stands() && human.goal.is_none();
             for (number, step) in human.does.iter().enumerate() {
                 let at = place(node, "does", number);
-                if stands && matches!(step.act, Some(Deed::TurnBack | Deed::ChangePace)) {
+                if stands && matches!(step.act, Some(Deed::TurnBack | Deed::ChangePace(_))) {
                     let hint = "`frontal`, `crossing`, `leaving` or another relation of somebody who walks";
                     self.bad("human.does.act", at, "walks, but stands by its relation", hint);
                 }
@@ -176,7 +146,7 @@ impl Door<'_> {
                 }
                 let own = |name: &&String| meant(form, name).contains(&who) && human.count == 1;
                 if step.to.as_ref().filter(own).is_some()
-                    || step.act.as_ref().and_then(Deed::names).map(|(name, _)| name).filter(own).is_some()
+                    || step.act.as_ref().and_then(Deed::names).filter(own).is_some()
                 {
                     self.bad("human.does", at, "is done to themselves", "the name of somebody else");
                 }
@@ -184,7 +154,7 @@ impl Door<'_> {
             for rule in human
                 .reacts
                 .iter()
-                .filter(|rule| matches!(rule.act, Some(Deed::TurnBack | Deed::GoTo(_) | Deed::ChangePace)))
+                .filter(|rule| matches!(rule.act, Some(Deed::TurnBack | Deed::GoTo(_) | Deed::ChangePace(_))))
             {
                 let at = human
                     .reacts

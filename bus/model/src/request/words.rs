@@ -11,22 +11,27 @@ pub(super) struct Words {
     /// What one of them is: `trigger`.
     pub(super) what: &'static str,
     /// Each word with an example of how it is written.
-    pub(super) all: &'static [(&'static str, &'static str)],
+    pub(super) all: Vec<(&'static str, String)>,
     /// What may stand besides: `, or a list of them`.
     pub(super) more: &'static str,
 }
 
 impl Words {
+    /// A list whose words and examples stand in a table.
+    pub(super) fn of_table(what: &'static str, table: &[(&'static str, &str)]) -> Self {
+        Self { what, all: table.iter().map(|(word, example)| (*word, (*example).to_owned())).collect(), more: "" }
+    }
+
     /// Every word as it is written.
     fn listed(&self) -> String {
-        let examples: Vec<&str> = self.all.iter().map(|(_, example)| *example).collect();
+        let examples: Vec<&str> = self.all.iter().map(|(_, example)| example.as_str()).collect();
         format!("{}{}", examples.join(", "), self.more)
     }
 
     /// The word that is spelled most like another one, with its example.
-    fn nearest(&self, wrong: &str) -> Option<(&'static str, &'static str)> {
+    fn nearest(&self, wrong: &str) -> Option<&(&'static str, String)> {
         let wrong = wrong.to_lowercase();
-        self.all.iter().copied().min_by_key(|(word, _)| distance(&wrong, &word.to_lowercase()))
+        self.all.iter().min_by_key(|(word, _)| distance(&wrong, &word.to_lowercase()))
     }
 }
 

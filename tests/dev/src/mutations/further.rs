@@ -63,7 +63,7 @@ task = "Carry a box"
 [[human]]
 relation = "frontal"
 side = "right"
-does = [{ when = { robot_near = 5.0 }, act = "stand_still", for_s = 3 }, { act = "change_pace", pace = "slow" }]
+does = [{ when = { robot_near = 5.0 }, act = "stand_still", for_s = 3 }, { act = { change_pace = "slow" } }]
 
 [[human]]
 relation = "crossing"
@@ -162,7 +162,7 @@ facing = "robot"
 
 [[human]]
 relation = "frontal"
-does = [{ when = { robot_near = 5.0 }, act = "change_pace", pace = "slow" }]
+does = [{ when = { robot_near = 5.0 }, act = { change_pace = "slow" } }]
 "#,
     ),
     (
@@ -419,7 +419,7 @@ task = "Bring the mail to the reception"
 [[human]]
 relation = "frontal"
 place = "corridor"
-does = [{ when = { robot_visible = 5.0 }, act = "approach", near_m = 0.8, for_s = 4 }]
+does = [{ when = { robot_visible = 5.0 }, act = { approach_to = 0.8 }, for_s = 4 }]
 
 [robot]
 return = true

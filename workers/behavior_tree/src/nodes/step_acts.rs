@@ -1,5 +1,6 @@
 //! Motions that only steps of a form have. Each succeeds in the tick it is done in.
 
+use socrates_model::act::Target;
 use socrates_model::{Action, NodeId};
 
 use crate::nodes::human_says::human;
@@ -39,7 +40,7 @@ pub(super) const GO_TO: NodeSheet = NodeSheet {
     role: Role::Moves(|ports| {
         let nodes = ports.text(3)?;
         let nodes: Vec<NodeId> = nodes.split(',').filter_map(|id| NodeId::new(id).ok()).collect();
-        Some(Action::GoTo { place: ports.text(2)?.into_owned(), nodes })
+        Some(Action::GoTo(Target { place: ports.text(2)?.into_owned(), nodes }))
     }),
     ..REGULAR_NAV
 };

@@ -265,7 +265,7 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Re
 /// A node of the place to which a step leads a person.
 fn led_to<'a>(signals: &Signals<'a>, human: HumanId) -> Option<&'a NodeId> {
     let rules = signals.evidence.proposal?.human(human).map(|human| &human.rules)?;
-    rules.iter().find_map(|rule| if let Action::GoTo { nodes, .. } = &rule.act { nodes.first() } else { None })
+    rules.iter().find_map(|rule| if let Action::GoTo(to) = &rule.act { to.nodes.first() } else { None })
 }
 
 /// The robot is out of the door before the first human goes in.

@@ -70,7 +70,7 @@ const fn most_s(act: &Action) -> f64 {
         | Action::Approach
         | Action::ApproachTo(_)
         | Action::TurnBack
-        | Action::GoTo { .. }
+        | Action::GoTo(_)
         | Action::ChangePace(_) => 0.5,
         Action::GiveWay | Action::MakeRoom => 0.3,
     }
@@ -193,7 +193,7 @@ fn lasts(signals: &Signals<'_>, human: HumanId, rule: &Rule, begun_s: f64) -> Re
     // The end of the way is that of the way they walk then, not of the one they were given.
     let to_the_end = matches!(
         (&rule.act, rule.until.as_slice()),
-        (Action::Navigate | Action::TurnBack | Action::GoTo { .. }, [Trigger::GoalReached])
+        (Action::Navigate | Action::TurnBack | Action::GoTo(_), [Trigger::GoalReached])
     );
     let gives = matches!(rule.act, Action::GiveWay | Action::MakeRoom);
     let own = to_the_end || gives && rule.until == [Trigger::RobotPassed];

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use socrates_model::act::Target;
 use socrates_model::{Action, HumanId, NodeId, Point, Rule};
 
 use crate::fidelity::finding::Finding;
@@ -98,12 +99,12 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
     if places.is_empty() {
         return Finding::not_applicable("there is no map with the nodes of the place");
     }
-    let goes = |rule: &Rule| matches!(&rule.act, Action::GoTo { nodes: own, .. } if own == nodes);
+    let goes = |rule: &Rule| matches!(&rule.act, Action::GoTo(to) if to.nodes == *nodes);
     let since = match since(signals, human, goes) {
         Ok(since) => since,
         Err(never) => return never,
     };
-    let act = Action::GoTo { place: String::new(), nodes: Vec::new() };
+    let act = Action::GoTo(Target { place: String::new(), nodes: Vec::new() });
     let begun_s = signals
         .leaves_of(human)
         .iter()

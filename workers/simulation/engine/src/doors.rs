@@ -9,9 +9,8 @@
 
 use std::collections::BTreeSet;
 
+use socrates_model::act::ACTS;
 use socrates_model::{Door, DoorKind, DoorOpens, Event, EventKind, Gesture, Location, Point, Vector};
-
-use crate::human::{LEAVES, STEP_LEAVES};
 
 /// Nobody within this distance of the door line lets it close, m.
 const CLOSING_REACH_M: f64 = 1.0;
@@ -38,7 +37,7 @@ const CALL_M: f64 = 0.1;
 pub fn event_names(location: &Location) -> BTreeSet<String> {
     let mut names: BTreeSet<String> = [ENCOUNTER, "robot arrived"].into_iter().map(str::to_owned).collect();
     names.extend(Gesture::ALL.iter().map(ToString::to_string));
-    names.extend(LEAVES.iter().chain(&STEP_LEAVES).filter(|leaf| !leaf.is_empty()).map(|leaf| (*leaf).to_owned()));
+    names.extend(ACTS.iter().map(|act| act.leaf.to_owned()));
     names.extend(location.graph.nodes().iter().map(|node| format!("node {}", node.id)));
     for door in &location.doors {
         names.extend([format!("door {} opens", door.id), format!("door {} closes", door.id)]);

@@ -143,7 +143,7 @@ impl Human {
 
     /// Whether it gets on along its way.
     pub(crate) const fn gets_on(&self) -> bool {
-        matches!(self.action, Action::Navigate | Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_))
+        matches!(self.action, Action::Navigate | Action::TurnBack | Action::GoTo(_) | Action::ChangePace(_))
     }
 
     /// The first of its meetings: what trees and scripts call the encounter.
@@ -221,79 +221,5 @@ impl Human {
     /// Whether it never leaves its place by itself.
     pub(crate) fn stays(&self) -> bool {
         self.route.length_m() < 0.05 || !self.diverted && self.relation.stands() && self.nodes.len() <= 1
-    }
-}
-
-/// Name of the leaf of an action, as recordings write it whatever the tree calls it.
-pub(crate) const fn leaf_name(action: &Action) -> &'static str {
-    match action {
-        Action::Navigate => "RegularNav",
-        Action::FollowRobot => "FollowRobot",
-        Action::FollowHuman(_) => "FollowHuman",
-        Action::RunAway => "RunAwayFromRobot",
-        Action::GiveWay => "GiveWaytoRobot",
-        Action::Block => "BlockRobot",
-        Action::LookAtRobot => "LookAtRobot",
-        Action::Approach => "ApproachRobot",
-        Action::StandStill => "StandStill",
-        Action::LookAt(_) => "WatchHuman",
-        Action::TurnBack => "TurnBack",
-        Action::GoTo { .. } => "GoToPlace",
-        Action::ChangePace(_) => "ChangePace",
-        Action::MakeRoom => "MakeRoom",
-        Action::ApproachTo(_) => "ComeClose",
-    }
-}
-
-/// Leaves by the number that frames carry; 0 is none.
-pub(crate) const LEAVES: [&str; 10] = [
-    "",
-    "RegularNav",
-    "FollowRobot",
-    "FollowHuman",
-    "RunAwayFromRobot",
-    "GiveWaytoRobot",
-    "BlockRobot",
-    "LookAtRobot",
-    "ApproachRobot",
-    "StandStill",
-];
-
-/// Leaves of acts that only steps of a form have; in a header they come after those of recorded people.
-pub(crate) const STEP_LEAVES: [&str; 6] =
-    ["WatchHuman", "TurnBack", "ChangePace", "GoToPlace", "MakeRoom", "ComeClose"];
-
-/// Number of the leaf of an action in [`LEAVES`], or among [`STEP_LEAVES`] behind them and the two of recorded people.
-pub(crate) const fn leaf_number(action: &Action) -> u16 {
-    match action {
-        Action::Navigate => 1,
-        Action::FollowRobot => 2,
-        Action::FollowHuman(_) => 3,
-        Action::RunAway => 4,
-        Action::GiveWay => 5,
-        Action::Block => 6,
-        Action::LookAtRobot => 7,
-        Action::Approach => 8,
-        Action::StandStill => 9,
-        Action::LookAt(_) => 12,
-        Action::TurnBack => 13,
-        Action::ChangePace(_) => 14,
-        Action::GoTo { .. } => 15,
-        Action::MakeRoom => 16,
-        Action::ApproachTo(_) => 17,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_leaf_has_the_number_of_its_name() {
-        use Action::{Approach, Block, FollowHuman, FollowRobot, GiveWay, LookAtRobot, Navigate, RunAway, StandStill};
-        let follow = FollowHuman(HumanId::new(2));
-        for action in [Navigate, FollowRobot, follow, RunAway, GiveWay, Block, LookAtRobot, Approach, StandStill] {
-            assert_eq!(LEAVES[usize::from(leaf_number(&action))], leaf_name(&action));
-        }
     }
 }

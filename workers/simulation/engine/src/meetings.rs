@@ -2,7 +2,8 @@
 
 use socrates_model::rule::{RobotDo, RobotWhen};
 use socrates_model::{
-    Action, AgentId, Clause, HumanId, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Rule, Trigger, Visit,
+    Action, AgentId, Clause, Gesture, HumanId, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Rule,
+    Trigger, Visit,
 };
 
 use crate::human::{Human, Meeting};
@@ -78,20 +79,13 @@ fn stops_s(proposal: &HumanProposal, robot_mps: f64) -> f64 {
     let mut steps: Vec<_> = proposal.rules.iter().filter(|rule| rule.step.is_some()).collect();
     steps.sort_by_key(|rule| rule.step);
     let stands = |rule: &&&Rule| rule.act.stands();
-    match proposal.relation {
-        Relation::Ahead => return nears_s(steps.first().copied(), robot_mps),
-        // To get past the robot they have to be there well before it, where they stop.
-        Relation::Behind if steps.first().filter(stands).is_some_and(|first| first.when == [Trigger::AtEncounter]) => {
-            return PASSES_M / robot_mps;
-        }
-        Relation::Frontal
-        | Relation::Behind
-        | Relation::Abreast
-        | Relation::Crossing
-        | Relation::Static
-        | Relation::Leaving
-        | Relation::Staying
-        | Relation::Aside => {}
+    if proposal.relation == Relation::Ahead {
+        return nears_s(steps.first().copied(), robot_mps);
+    }
+    // To get past the robot they have to be there well before it, where they stop.
+    let stops_there = steps.first().filter(stands).is_some_and(|first| first.when == [Trigger::AtEncounter]);
+    if proposal.relation == Relation::Behind && stops_there {
+        return PASSES_M / robot_mps;
     }
     let at_m = steps.first().filter(stands).and_then(|first| {
         let [Trigger::RobotVisible(m) | Trigger::RobotNear(m)] = first.when.as_slice() else { return None };
@@ -118,33 +112,11 @@ fn nears_s(first: Option<&Rule>, robot_mps: f64) -> f64 {
 
 /// Whether somebody else, or the robot, waits for something that this one does.
 pub(crate) fn is_awaited(setup: &Setup, proposal: &HumanProposal) -> bool {
-    let waits = |when: &Trigger| match when {
-        Trigger::Done(id) | Trigger::Did(id, _) | Trigger::HumanSays(id, _) => *id == proposal.id,
-        Trigger::Always
-        | Trigger::RobotVisible(_)
-        | Trigger::RobotNear(_)
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::AtEncounter
-        | Trigger::GoalReached
-        | Trigger::AfterSecs(_)
-        | Trigger::StoppedFor(_) => false,
-    };
+    let waits = |when: &Trigger| when.names() == Some(&proposal.id);
     let others = setup.proposal.humans.iter().filter(|other| other.id != proposal.id);
     let by_people = others.flat_map(|other| &other.rules).any(|rule| rule.when.iter().chain(&rule.until).any(waits));
-    let says = |when: &RobotWhen| match when {
-        RobotWhen::HumanSays(sign) => proposal.rules.iter().any(|rule| rule.gesture == Some(*sign)),
-        RobotWhen::Start
-        | RobotWhen::Blocked(_)
-        | RobotWhen::HumanNear(_)
-        | RobotWhen::Near(..)
-        | RobotWhen::AtEncounter(_)
-        | RobotWhen::Did(_)
-        | RobotWhen::AfterSecs(_) => false,
-    };
+    let makes = |sign: Gesture| proposal.rules.iter().any(|rule| rule.gesture == Some(sign));
+    let says = |when: &RobotWhen| if let RobotWhen::HumanSays(sign) = when { makes(*sign) } else { false };
     let by_robot =
         setup.proposal.robot.script.iter().any(|line| {
             says(&line.when) || if let RobotDo::HoldUntil(until) = &line.act { says(until) } else { false }

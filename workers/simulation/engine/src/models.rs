@@ -7,12 +7,13 @@ use socrates_crowd::model::{Room, View};
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_crowd::tracks::Track;
 use socrates_crowd::{Goal, Person, Segment};
+use socrates_model::act::ActRow;
 use socrates_model::recording::{ABSENT_LEAF, AgentInfo, DRIVEN_LEAF};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{Fault, FaultCode, HumanId, Point, Vector};
 
 use crate::driven::Driven;
-use crate::human::{Human, LEAVES, STEP_LEAVES};
+use crate::human::Human;
 use crate::near::Other;
 use crate::run::Engine;
 use crate::start;
@@ -50,8 +51,7 @@ pub(crate) enum Walks {
 }
 
 /// Number of the leaf of somebody who is driven: behind all others, so that a header names those as ever.
-#[expect(clippy::cast_possible_truncation, reason = "a few leaves")]
-pub(crate) const DRIVEN_LEAF_NUMBER: u16 = (LEAVES.len() + 2 + STEP_LEAVES.len()) as u16;
+pub(crate) const DRIVEN_LEAF_NUMBER: u16 = ActRow::AFTER_ALL;
 
 impl Engine {
     /// The same run with other models for some of its people, and with recorded people besides.
@@ -104,12 +104,12 @@ impl Engine {
             return Err(faults);
         }
         if self.humans.len() > known.len() {
-            self.header.leaves.truncate(LEAVES.len());
+            self.header.leaves.truncate(ActRow::AFTER_RULES.into());
             self.header.leaves.extend([TRACK_LEAF.to_owned(), ABSENT_LEAF.to_owned()]);
         }
         if self.humans.iter().any(Human::is_driven) {
-            self.header.leaves.truncate(LEAVES.len());
-            let behind = [TRACK_LEAF, ABSENT_LEAF].into_iter().chain(STEP_LEAVES).chain([DRIVEN_LEAF]);
+            self.header.leaves.truncate(ActRow::AFTER_RULES.into());
+            let behind = [TRACK_LEAF, ABSENT_LEAF].into_iter().chain(ActRow::leaves(true)).chain([DRIVEN_LEAF]);
             self.header.leaves.extend(behind.map(str::to_owned));
         }
         Ok(self)

@@ -195,20 +195,7 @@ pub(crate) fn holders(humans: &[Human], robot: Option<&Robot>) -> Vec<(HumanId, 
         return Vec::new();
     };
     // Standing by a rule of theirs: whoever comes up to it, walks on, or stands where they always do keeps nobody away.
-    let stands = |human: &Human| match human.action {
-        Action::StandStill | Action::LookAtRobot | Action::LookAt(_) | Action::Block => true,
-        Action::Navigate
-        | Action::FollowRobot
-        | Action::FollowHuman(_)
-        | Action::RunAway
-        | Action::GiveWay
-        | Action::MakeRoom
-        | Action::Approach
-        | Action::ApproachTo(_)
-        | Action::TurnBack
-        | Action::GoTo { .. }
-        | Action::ChangePace(_) => false,
-    };
+    let stands = |human: &Human| human.action.stands() || human.action == Action::Block;
     let holds = |human: &&Human| human.present() && stands(human) && (human.at - robot.at()).norm() < HOLDS_UP_M;
     let at = |human: &Human| human.meetings.first().map(|meeting| (human.id, meeting.robot_s));
     humans.iter().filter(holds).filter_map(at).collect()

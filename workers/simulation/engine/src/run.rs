@@ -2,6 +2,7 @@
 
 use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
+use socrates_model::act::ActRow;
 use socrates_model::recording::DRIVEN_LEAF;
 use socrates_model::request::Waypoints;
 use socrates_model::time::STEP_SECS;
@@ -15,7 +16,7 @@ use crate::doors::{self, Doors, Passer, Raised};
 use crate::drive::Drivers;
 use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
-use crate::human::{DoorOnWay, Human, LEAVES, leaf_name, leaf_number};
+use crate::human::{DoorOnWay, Human};
 use crate::models::DRIVEN_LEAF_NUMBER;
 use crate::near::Near;
 use crate::recorder::Recorder;
@@ -263,8 +264,8 @@ impl Engine {
             // A tick in which nothing acts is a pause, not a new motion.
             let act = act.unwrap_or(Action::StandStill);
             if act != human.action || first {
-                if leaf_number(&act) != leaf_number(&human.action) || first {
-                    recorder.tell(EventKind::Leaf { human: human.id, leaf: leaf_name(&act).to_owned() });
+                if act.row() != human.action.row() || first {
+                    recorder.tell(EventKind::Leaf { human: human.id, leaf: act.row().leaf.to_owned() });
                 }
                 if act == Action::Navigate && !first {
                     walk::resume(human);
@@ -367,7 +368,7 @@ impl Engine {
             let (there, speed_mps) = (human.at_goal(), human.velocity.norm());
             let walks = human.gets_on() && !human.waits();
             done &= human.stays() || there || !walks && speed_mps < 0.05;
-            under_way |= !there && walks && (human.bound || matches!(human.action, Action::GoTo { .. }));
+            under_way |= !there && walks && (human.bound || matches!(human.action, Action::GoTo(_)));
             walkers.push((human.id, human.s, walks && human.started && !there && speed_mps < 0.3));
         }
         Standing {
@@ -386,13 +387,12 @@ impl Engine {
 
 /// Number of the leaf that a frame tells: of the action, or what somebody recorded does.
 fn leaf(human: &Human) -> u16 {
-    let after = u16::try_from(LEAVES.len()).unwrap_or(u16::MAX);
     if human.is_driven() {
         return DRIVEN_LEAF_NUMBER;
     }
     match (human.is_recorded(), human.present()) {
-        (false, _) => leaf_number(&human.action),
-        (true, true) => after,
-        (true, false) => after.saturating_add(1),
+        (false, _) => human.action.row().leaf_number,
+        (true, true) => ActRow::AFTER_RULES,
+        (true, false) => ActRow::AFTER_RULES + 1,
     }
 }

@@ -6,6 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 use socrates_bt::{Tree, TreeState};
 use socrates_maps::openings::Enclosures;
+use socrates_model::act::ActRow;
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::seeds::{self, derive_seed};
@@ -19,7 +20,7 @@ use crate::block::blockers;
 use crate::ends;
 use crate::floor::Floor;
 use crate::gaze;
-use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting, STEP_LEAVES};
+use crate::human::{DoorOnWay, Errand, Human, Meeting};
 use crate::make_room::Facing;
 use crate::meetings::{self, Marks};
 use crate::models::{TRACK_LEAF, Walks};
@@ -494,9 +495,9 @@ fn drawn_sway(seed: u64, human: HumanId) -> (f64, f64) {
 /// Names of leaves; those of steps only where somebody has such a step.
 fn leaves(setup: &Setup) -> Vec<String> {
     let mut rules = setup.proposal.humans.iter().flat_map(|human| &human.rules);
-    let steps = if rules.any(|rule| rule.act.is_of_steps()) { &STEP_LEAVES[..] } else { &[] };
-    let recorded = if steps.is_empty() { &[][..] } else { &[TRACK_LEAF, ABSENT_LEAF] };
-    LEAVES.iter().chain(recorded).chain(steps).map(|leaf| (*leaf).to_owned()).collect()
+    let behind = rules.any(|rule| rule.act.row().is_of_steps());
+    let steps = behind.then(|| [TRACK_LEAF, ABSENT_LEAF].into_iter().chain(ActRow::leaves(true)));
+    ActRow::leaves(false).chain(steps.into_iter().flatten()).map(str::to_owned).collect()
 }
 
 /// The header of the run.

@@ -46,29 +46,14 @@ const DEEPER: f64 = 2.0;
 
 /// Begins the present act, where it changes the way or the pace.
 pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor, there: &OthersAround<'_>) {
-    match &human.action {
-        Action::TurnBack if !human.diverted => turn(human, setup, floor),
-        Action::GoTo { nodes, .. } => {
-            if let Some((node, way)) = nearest(human, nodes, (setup, floor), there) {
-                go(human, node, way, setup);
-            }
+    if human.action == Action::TurnBack && !human.diverted {
+        turn(human, setup, floor);
+    } else if let Action::GoTo(to) = &human.action {
+        if let Some((node, way)) = nearest(human, &to.nodes, (setup, floor), there) {
+            go(human, node, way, setup);
         }
-        Action::ChangePace(mps) => {
-            (human.pace_mps, human.speed_mps) = (Some(*mps), *mps);
-        }
-        Action::TurnBack
-        | Action::Navigate
-        | Action::FollowRobot
-        | Action::FollowHuman(_)
-        | Action::RunAway
-        | Action::GiveWay
-        | Action::MakeRoom
-        | Action::ApproachTo(_)
-        | Action::Block
-        | Action::LookAtRobot
-        | Action::Approach
-        | Action::StandStill
-        | Action::LookAt(_) => {}
+    } else if let Action::ChangePace(mps) = human.action {
+        (human.pace_mps, human.speed_mps) = (Some(mps), mps);
     }
 }
 

@@ -186,7 +186,7 @@ impl World for View<'_> {
     fn has_arrived(&self) -> bool {
         // A step that begins in this very tick has not set off yet.
         let begins = self.steps_ended > self.human.steps_ended;
-        let leads = matches!(self.human.action, Action::TurnBack | Action::GoTo { .. });
+        let leads = matches!(self.human.action, Action::TurnBack | Action::GoTo(_));
         leads && !begins && self.human.at_goal()
     }
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use socrates_model::act::Target;
 use socrates_model::report::Standing;
 use socrates_model::{
     Action, AgentId, ClauseResult, EventKind, Gesture, HumanId, Predicate, Recording, Rule, Trigger, Verdict,
@@ -108,7 +109,7 @@ fn another_pace_is_a_quarter_faster_or_slower() {
 #[test]
 fn going_to_a_place_is_getting_there() {
     let nodes = vec![crate::fixture::node("m")];
-    let act = Action::GoTo { place: "corridor".into(), nodes: nodes.clone() };
+    let act = Action::GoTo(Target { place: "corridor".into(), nodes: nodes.clone() });
     let case = case(step(act), Predicate::GoesTo { human: H1, nodes });
     // 1.8 m away from it they begin to go there.
     let me = Walk::human_through(1, &[(0., 8., 0.9), (6., 1.6, 0.9), (9., 0.3, 0.4), (20., 0.3, 0.4)]);
