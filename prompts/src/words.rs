@@ -4,7 +4,7 @@ use serde_json::Value;
 use socrates_model::Gesture;
 use socrates_model::act::ACTS;
 use socrates_model::form::{RobotDeed, RobotMoment};
-use socrates_model::rule::TRIGGERS;
+use socrates_model::rule::{ROBOT_MOMENTS, TRIGGERS};
 
 use crate::vocabulary::{relations, row, short, told_gesture};
 
@@ -22,21 +22,9 @@ pub(crate) fn tables() -> String {
         ACTS.iter().map(|act| line((act.json(), act.meaning))).collect::<String>(),
         TRIGGERS.iter().map(|one| line((one.json(), one.meaning))).collect::<String>(),
         signs.join(", "),
-        lines(&robot_moments()),
+        ROBOT_MOMENTS.iter().map(|one| line((one.json(), one.meaning))).collect::<String>(),
         lines(&robot_deeds()),
     )
-}
-
-fn robot_moments() -> Vec<(Value, String)> {
-    vec![
-        row(&RobotMoment::Start, "the first line unless stated; others begin when the line before is over"),
-        row(&RobotMoment::Blocked(2.0), "s in which somebody is close ahead"),
-        row(&RobotMoment::HumanNear(3.0), "m, whoever comes first"),
-        row(&RobotMoment::Near("human_1".to_owned(), 3.0), "this person"),
-        row(&RobotMoment::HumanSays(Gesture::Wait), ""),
-        row(&RobotMoment::AtEncounter("human_1".to_owned()), ""),
-        row(&RobotMoment::AfterSecs(5.0), ""),
-    ]
 }
 
 fn robot_deeds() -> Vec<(Value, String)> {

@@ -167,22 +167,15 @@ fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
             ));
         }
     };
-    match &line.when {
-        RobotWhen::AtEncounter(id) | RobotWhen::Near(id, _) => known(id),
-        RobotWhen::Start
-        | RobotWhen::Blocked(_)
-        | RobotWhen::HumanNear(_)
-        | RobotWhen::HumanSays(_)
-        | RobotWhen::Did(_)
-        | RobotWhen::AfterSecs(_) => {}
-    }
-    match &line.act {
-        RobotDo::Follow(id) | RobotDo::Abreast(id) | RobotDo::Overtake(id) => known(id),
-        RobotDo::HoldUntil(RobotWhen::AtEncounter(id) | RobotWhen::Near(id, _)) => known(id),
-        RobotDo::Say(_) | RobotDo::Hold(_) | RobotDo::HoldUntil(_) | RobotDo::WaitForLeavers | RobotDo::Lead(_) => {}
-    }
+    let until = if let RobotDo::HoldUntil(until) = &line.act { until.names() } else { None };
+    let with = if let RobotDo::Follow(id) | RobotDo::Abreast(id) | RobotDo::Overtake(id) = &line.act {
+        Some(id)
+    } else {
+        None
+    };
+    line.when.names().into_iter().chain(until).chain(with).for_each(&mut known);
     let own = proposal.robot.script.iter().position(|other| other == line).unwrap_or_default();
-    if let RobotWhen::Did(number) = line.when
+    if let RobotWhen::AfterLine(number) = line.when
         && !usize::try_from(number).is_ok_and(|number| (1..=own).contains(&number))
     {
         wrong.push(format!("begins after line {number}; allowed: the number of a line before it"));

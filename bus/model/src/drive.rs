@@ -56,9 +56,30 @@ pub struct SeenDoor {
 
 /// What only an actor may know: the `reference` planner plays a script, planners under test do not look here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Cues {
+pub struct Cues<'a> {
     /// Humans who will come out of the place the robot wants to enter or pass, or go in before it, and have not yet.
     pub leavers_inside: u32,
+    /// How far everybody is with their steps.
+    pub people: &'a [HumanCue],
+}
+
+/// How far a person is with the steps of their sequence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct HumanCue {
+    /// The person.
+    pub human: HumanId,
+    /// Number of the last step that has ended; 0 for none.
+    pub steps_ended: u32,
+    /// Whether all have, as [`Trigger::Done`](crate::Trigger::Done) says.
+    pub is_done: bool,
+}
+
+impl HumanCue {
+    /// Whether this is the person, and that step of theirs has ended.
+    #[must_use]
+    pub fn has_ended(&self, human: HumanId, step: u32) -> bool {
+        self.human == human && self.steps_ended >= step
+    }
 }
 
 /// The world at the start of a call, from the place of the one who is driven: the robot, or a person.
@@ -84,7 +105,7 @@ pub struct Observation<'a> {
     /// One lidar scan: 360 ranges in m, beam 0 straight ahead, counter-clockwise by one degree; made when asked for.
     pub lidar: &'a dyn Fn() -> Vec<f64>,
     /// For actors only.
-    pub cues: Cues,
+    pub cues: Cues<'a>,
 }
 
 /// What a planner wants.

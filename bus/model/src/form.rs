@@ -131,49 +131,20 @@ pub struct RobotStep {
     pub act: RobotDeed,
 }
 
-/// When the robot acts: as [`RobotWhen`], with people by name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum RobotMoment {
-    /// From the start.
-    Start,
-    /// Somebody has been close ahead of it for so many s.
-    Blocked(f64),
-    /// Somebody is within so many m.
-    HumanNear(f64),
-    /// This person is within a distance, m.
-    Near(String, f64),
-    /// Somebody makes this gesture.
-    HumanSays(Gesture),
-    /// It is where it meets this person.
-    AtEncounter(String),
-    /// Time after the start, s.
-    AfterSecs(f64),
-}
+/// When the robot acts: a moment with people by name.
+pub type RobotMoment = RobotWhen<String>;
 
 impl RobotMoment {
-    /// The moments with how each is written, for messages.
-    pub(crate) const WORDS: &[(&str, &str)] = &[
-        ("start", "\"start\""),
-        ("blocked", "{ blocked = 2.0 }"),
-        ("human_near", "{ human_near = 3.0 }"),
-        ("near", "{ near = [\"nurse\", 3.0] }"),
-        ("human_says", "{ human_says = \"WAIT\" }"),
-        ("at_encounter", "{ at_encounter = \"nurse\" }"),
-        ("after_secs", "{ after_secs = 5.0 }"),
-    ];
-
     pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
-        match self {
-            Self::Blocked(s) => Some((*s, [0.1, 60.0], "s")),
-            Self::HumanNear(m) | Self::Near(_, m) => Some((*m, [0.3, 15.0], "m")),
-            Self::AfterSecs(s) => Some((*s, [0.1, 600.0], "s")),
-            Self::Start | Self::HumanSays(_) | Self::AtEncounter(_) => None,
+        if let Self::HumanNear(m) | Self::Near(_, m) = self {
+            Some((*m, [0.3, 15.0], "m"))
+        } else if let Self::Blocked(s) = self {
+            Some((*s, [0.1, 60.0], "s"))
+        } else if let Self::AfterSecs(s) = self {
+            Some((*s, [0.1, 600.0], "s"))
+        } else {
+            None
         }
-    }
-
-    pub(crate) const fn names(&self) -> Option<&String> {
-        if let Self::AtEncounter(id) | Self::Near(id, _) = self { Some(id) } else { None }
     }
 }
 
@@ -349,17 +320,7 @@ impl Form {
     /// The lines of the robot's script.
     #[must_use]
     pub fn script(&self, steps: &[RobotStep]) -> Vec<RobotRule> {
-        let when = |moment: &RobotMoment| {
-            Some(match moment {
-                RobotMoment::Start => RobotWhen::Start,
-                RobotMoment::Blocked(s) => RobotWhen::Blocked(*s),
-                RobotMoment::HumanNear(m) => RobotWhen::HumanNear(*m),
-                RobotMoment::Near(name, m) => RobotWhen::Near(self.one(name)?, *m),
-                RobotMoment::HumanSays(gesture) => RobotWhen::HumanSays(*gesture),
-                RobotMoment::AtEncounter(name) => RobotWhen::AtEncounter(self.one(name)?),
-                RobotMoment::AfterSecs(s) => RobotWhen::AfterSecs(*s),
-            })
-        };
+        let when = |moment: &RobotMoment| moment.of_person(|name| self.one(name));
         let act = |deed: &RobotDeed| {
             Some(match deed {
                 RobotDeed::Say(gesture) => RobotDo::Say(*gesture),
@@ -377,7 +338,7 @@ impl Form {
             let before = place.checked_sub(1).and_then(|before| steps.get(before));
             let own = |before: &RobotStep| before.when == step.when && before.act.stands();
             let when = if before.is_some_and(|before| step.when.is_none() || own(before)) {
-                RobotWhen::Did(u32::try_from(place).ok()?)
+                RobotWhen::AfterLine(u32::try_from(place).ok()?)
             } else {
                 step.when.as_ref().map_or(Some(RobotWhen::Start), when)?
             };

@@ -272,7 +272,8 @@ fn scripted(when: &RobotWhen, act: &RobotDo) -> (String, Option<f64>) {
         RobotWhen::HumanSays(gesture) => (format!("hears {gesture}"), None),
         RobotWhen::AtEncounter(_) => ("meets".to_owned(), None),
         RobotWhen::AfterSecs(s) => ("after".to_owned(), Some(*s)),
-        RobotWhen::Did(_) => ("then".to_owned(), None),
+        RobotWhen::Did(..) | RobotWhen::Done(_) => ("after a human".to_owned(), None),
+        RobotWhen::AfterLine(_) => ("then".to_owned(), None),
     };
     let done = match act {
         RobotDo::Say(gesture) => format!("says {gesture}"),

@@ -7,9 +7,9 @@ use crate::act::{self, Action};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, HumanId};
 
-/// What is said of a trigger, whoever waits for it.
+/// What is said of a moment that a person or the robot waits for, whoever waits.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TriggerRow {
+pub struct MomentRow {
     /// Its word in a form, and its tag in JSON: `robot_near`.
     pub word: &'static str,
     /// Its argument, as TOML and JSON write one; empty for a trigger without.
@@ -18,7 +18,7 @@ pub struct TriggerRow {
     pub meaning: &'static str,
 }
 
-impl TriggerRow {
+impl MomentRow {
     /// As a form writes it, in TOML: `{ robot_near = 2.0 }`.
     #[must_use]
     pub fn toml(&self) -> String {
@@ -32,21 +32,23 @@ impl TriggerRow {
     }
 }
 
-/// The triggers: name, arguments, word, an argument as it is written, meaning.
-macro_rules! triggers {
-    ($($(#[$meta:meta])* $name:ident $(($($argument:ty),*))? = $word:literal $written:literal $meaning:literal;)*) => {
-        /// Something a human can notice. Distances are center to center, m. People are those of a run; a form names them in its own words.
+/// Moments: the type, its table, and a row for each: name, arguments, word, an argument as it is written, meaning.
+macro_rules! moments {
+    (
+        $(#[$of_all:meta])* enum $moment:ident, $(#[$of_table:meta])* const $table:ident:
+        $($(#[$meta:meta])* $name:ident $(($($argument:ty),*))? = $word:literal $written:literal $meaning:literal;)*
+    ) => {
+        $(#[$of_all])*
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
-        pub enum Trigger<P = HumanId> {
+        pub enum $moment<P = HumanId> {
             $($(#[$meta])* $name $(($($argument),*))?,)*
         }
 
-        /// Every trigger, in the order in which an author reads them.
-        pub const TRIGGERS: &[TriggerRow] =
-            &[$(TriggerRow { word: $word, argument: $written, meaning: $meaning }),*];
+        $(#[$of_table])*
+        pub const $table: &[MomentRow] = &[$(MomentRow { word: $word, argument: $written, meaning: $meaning }),*];
 
-        impl<P> Trigger<P> {
+        impl<P> $moment<P> {
             /// Its word in a form.
             #[must_use]
             pub const fn word(&self) -> &'static str {
@@ -58,7 +60,11 @@ macro_rules! triggers {
     };
 }
 
-triggers! {
+moments! {
+    /// Something a human can notice. Distances are center to center, m. People are those of a run; a form names them in its own words.
+    enum Trigger,
+    /// Every trigger, in the order in which an author reads them.
+    const TRIGGERS:
     /// Always, from the first tick.
     Always = "always" "" "from the start";
     /// The robot is in the field of view, in line of sight and within this distance.
@@ -305,26 +311,59 @@ impl Rule {
     }
 }
 
-/// When the robot's script acts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum RobotWhen {
+moments! {
+    /// When the robot's script acts. People are those of a run; a form names them in its own words.
+    enum RobotWhen,
+    /// Every moment of the robot, in the order in which an author reads them.
+    const ROBOT_MOMENTS:
     /// From the start.
-    Start,
+    Start = "start" "" "the first line unless stated; others begin when the line before is over";
     /// A human has been within 1.6 m ahead of it for so many seconds.
-    Blocked(f64),
+    Blocked(f64) = "blocked" "2.0" "s in which somebody is close ahead";
     /// A human is within this distance, m.
-    HumanNear(f64),
+    HumanNear(f64) = "human_near" "3.0" "m, whoever comes first";
     /// This human is within this distance, m.
-    Near(HumanId, f64),
+    Near(P, f64) = "near" "[\"human_1\", 3.0]" "this person";
     /// A human makes this gesture.
-    HumanSays(Gesture),
+    HumanSays(Gesture) = "human_says" "\"WAIT\"" "";
     /// It reaches the encounter node of this human, or them while they are there; of several encounters, the first.
-    AtEncounter(HumanId),
+    AtEncounter(P) = "at_encounter" "\"human_1\"" "";
+    /// The step of this number, from 1, of a human's sequence has ended.
+    Did(P, u32) = "did" "[\"human_1\", 1]" "the first step of their `does` has ended";
+    /// All steps of a human have ended, as [`Trigger::Done`] says.
+    Done(P) = "done" "\"human_1\"" "all their steps have ended; without steps: they are past where they meet the robot";
     /// Time since the start, s.
-    AfterSecs(f64),
+    AfterSecs(f64) = "after_secs" "5.0" "";
     /// The line of this number, from 1, of the script is over.
-    Did(u32),
+    AfterLine(u32) = "after_line" "1" "this line of `robot.does` is over";
+}
+
+impl<P> RobotWhen<P> {
+    /// The person for whom it waits.
+    #[must_use]
+    pub const fn names(&self) -> Option<&P> {
+        if let Self::Near(id, _) | Self::AtEncounter(id) | Self::Did(id, _) | Self::Done(id) = self {
+            Some(id)
+        } else {
+            None
+        }
+    }
+
+    /// The same moment of other people; nothing where one of them is not there.
+    pub(crate) fn of_person<Q>(&self, person: impl Fn(&P) -> Option<Q>) -> Option<RobotWhen<Q>> {
+        Some(match self {
+            Self::Start => RobotWhen::Start,
+            Self::Blocked(s) => RobotWhen::Blocked(*s),
+            Self::HumanNear(m) => RobotWhen::HumanNear(*m),
+            Self::Near(id, m) => RobotWhen::Near(person(id)?, *m),
+            Self::HumanSays(gesture) => RobotWhen::HumanSays(*gesture),
+            Self::AtEncounter(id) => RobotWhen::AtEncounter(person(id)?),
+            Self::Did(id, step) => RobotWhen::Did(person(id)?, *step),
+            Self::Done(id) => RobotWhen::Done(person(id)?),
+            Self::AfterSecs(s) => RobotWhen::AfterSecs(*s),
+            Self::AfterLine(number) => RobotWhen::AfterLine(*number),
+        })
+    }
 }
 
 impl RobotWhen {
@@ -339,7 +378,9 @@ impl RobotWhen {
             Self::HumanSays(gesture) => format!("when a human says {gesture}"),
             Self::AtEncounter(human) => format!("at the encounter with {human}"),
             Self::AfterSecs(s) => format!("after {s} s"),
-            Self::Did(number) => format!("once line {number} of its script is over"),
+            Self::Did(human, step) => format!("once step {step} of {human} is over"),
+            Self::Done(human) => format!("once {human} is done"),
+            Self::AfterLine(number) => format!("once line {number} of its script is over"),
         }
     }
 

@@ -38,7 +38,7 @@ impl ScriptProgress {
     }
 
     /// One moment on. `holds` tells whether a moment has come, with its memory of being blocked, s; it is not asked for
-    /// [`RobotWhen::Did`]. `begins` is called with each line that begins, once; a sign that waits for being blocked begins again each time the
+    /// [`RobotWhen::AfterLine`]. `begins` is called with each line that begins, once; a sign that waits for being blocked begins again each time the
     /// robot is blocked again.
     pub fn step(
         &mut self,
@@ -58,7 +58,7 @@ impl ScriptProgress {
                 };
                 line.over = ends || now_s >= begun_s + line.rule.act.longest_s();
             }
-            let follows = matches!(line.rule.when, RobotWhen::Did(_));
+            let follows = matches!(line.rule.when, RobotWhen::AfterLine(_));
             let comes = if follows { before } else { holds(&line.rule.when, &mut line.held_s) };
             let anew = matches!((&line.rule.when, &line.rule.act), (RobotWhen::Blocked(_), RobotDo::Say(_)));
             if anew && line.held_s <= 0.0 {
@@ -76,7 +76,7 @@ impl ScriptProgress {
     /// Whether the line is over after which another begins.
     fn is_over_before(&self, place: usize) -> bool {
         let when = self.lines.get(place).map(|line| &line.rule.when);
-        let Some(RobotWhen::Did(number)) = when else { return false };
+        let Some(RobotWhen::AfterLine(number)) = when else { return false };
         let before = usize::try_from(*number).ok().and_then(|number| number.checked_sub(1));
         before.and_then(|before| self.lines.get(before)).is_some_and(|line| line.over)
     }
@@ -92,8 +92,11 @@ mod tests {
         let says = RobotDo::Say(Gesture::Proceed);
         let script = [
             RobotRule { when: RobotWhen::HumanNear(3.0), act: RobotDo::Hold(2.0) },
-            RobotRule { when: RobotWhen::Did(1), act: says.clone() },
-            RobotRule { when: RobotWhen::Did(2), act: RobotDo::HoldUntil(RobotWhen::HumanSays(Gesture::Proceed)) },
+            RobotRule { when: RobotWhen::AfterLine(1), act: says.clone() },
+            RobotRule {
+                when: RobotWhen::AfterLine(2),
+                act: RobotDo::HoldUntil(RobotWhen::HumanSays(Gesture::Proceed)),
+            },
         ];
         let mut progress = ScriptProgress::new(&script);
         let mut begun = Vec::new();

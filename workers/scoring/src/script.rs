@@ -126,6 +126,28 @@ fn a_hold_until_a_moment_ends_with_it() {
 }
 
 #[test]
+fn a_hold_until_somebody_is_done_ends_with_their_step() {
+    let case = line(RobotWhen::AfterSecs(5.0), RobotDo::HoldUntil(RobotWhen::Did(H1, 1)));
+    let run = |go_s: f64, ends: bool| {
+        let mut run = with_guard(robot(&[(0., -8.), (5.4, -4.), (go_s, -4.), (go_s + 10., 6.)]), &[]);
+        if ends {
+            event(&mut run, 12.0, EventKind::StepEnded { human: H1, step: 1 });
+        }
+        run
+    };
+    all(
+        &case,
+        vec![
+            ("goes with it", run(12.5, true), Standing::Holds),
+            ("sets off before it", run(9.0, true), Standing::Fails),
+            ("goes long after it", run(21.0, true), Standing::Fails),
+        ],
+    );
+    let never = line(RobotWhen::Done(H1), RobotDo::Hold(2.0));
+    assert_eq!(found(&never, &run(12.5, false)).standing, Standing::NotTriggered);
+}
+
+#[test]
 fn the_robot_goes_with_those_whom_its_script_names() {
     let ahead = |x: f64, mps: f64| Walk::human(1, x, -0.5, mps, 0.).leaf(0.0, WALKS);
     let run = |robot: Walk, human: Walk| {

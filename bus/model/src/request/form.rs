@@ -3,22 +3,25 @@
 use std::collections::BTreeMap;
 
 use super::read::{Door, Section};
+use super::steps::never_ends;
 use super::tree::{Kind, Node};
 use super::words::Words;
 use super::{Expect, GROUP_SIZES, MAX_HUMANS};
 use crate::form::{
     Deed, FacingWord, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment,
-    RobotStep, Step,
+    RobotStep, Step, When,
 };
 use crate::place::PlaceClass;
 use crate::proposal::{Relation, Side};
+use crate::rule::ROBOT_MOMENTS;
 
 const HUMAN_KEYS: [&str; 13] =
     ["id", "count", "role", "relation", "side", "facing", "place", "start", "goal", "pace", "group", "does", "reacts"];
 const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast, aside";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
 fn moments() -> Words {
-    Words::of_table("moment", RobotMoment::WORDS)
+    let all = ROBOT_MOMENTS.iter().map(|row| (row.word, row.toml())).collect();
+    Words { what: "moment", all, more: "" }
 }
 
 fn deeds() -> Words {
@@ -233,7 +236,12 @@ impl Door<'_> {
     }
 
     /// The robot's steps: `does = [{ when = { human_near = 3.0 }, say = "EXCUSE_ME" }]`.
-    pub(super) fn robot_steps<'n>(&mut self, section: &Section<'n>, names: &mut Names<'n>) -> Vec<RobotStep> {
+    pub(super) fn robot_steps<'n>(
+        &mut self,
+        section: &Section<'n>,
+        form: &Form,
+        names: &mut Names<'n>,
+    ) -> Vec<RobotStep> {
         let Some(node) = section.get("does") else { return Vec::new() };
         let Kind::List(nodes) = &node.kind else {
             self.bad("robot.does", node.at, format!("is {}", node.kind.name()), "a list: [{ say = \"FOLLOW_ME\" }]");
@@ -246,11 +254,8 @@ impl Door<'_> {
             if !matches!(node.kind, Kind::Table(_)) {
                 continue;
             }
-            let when = section.get("when").and_then(|node| {
-                let moment = self.word_of::<RobotMoment>("robot.does.when", node, &moments())?;
-                self.number("robot.does.when", node, moment.number());
-                Some(moment)
-            });
+            let before = steps.len();
+            let when = section.get("when").and_then(|node| self.robot_moment("robot.does.when", node, (form, before)));
             let deeds: Vec<(&str, &Node)> =
                 RobotDeed::KEYS.iter().filter_map(|key| section.get(key).map(|node| (*key, node))).collect();
             let [(key, value)] = deeds[..] else {
@@ -258,11 +263,11 @@ impl Door<'_> {
                 self.bad("robot.does", node.at, found, RobotDeed::ALLOWED);
                 continue;
             };
-            let Some(act) = self.robot_deed(key, value) else { continue };
+            let Some(act) = self.robot_deed(key, value, (form, before)) else { continue };
             self.number(&format!("robot.does.{key}"), value, act.number());
             let named = [
                 (act.names(), "robot.does", Some(value)),
-                (when.as_ref().and_then(RobotMoment::names), "at_encounter", section.get("when")),
+                (when.as_ref().and_then(RobotMoment::names), "robot.does.when", section.get("when")),
             ];
             for (name, key, node) in named {
                 names.0.extend(name.map(|name| Naming { who: name.clone(), key, node, robot: false, several: false }));
@@ -272,11 +277,33 @@ impl Door<'_> {
         steps
     }
 
+    /// A moment for which a line of the robot's part waits, behind so many lines.
+    fn robot_moment(&mut self, key: &str, node: &Node, (form, before): (&Form, usize)) -> Option<RobotMoment> {
+        let moment = self.word_of::<RobotMoment>(key, node, &moments())?;
+        self.number(key, node, moment.number());
+        if let RobotMoment::AfterLine(number) = moment
+            && !usize::try_from(number).is_ok_and(|number| (1..=before).contains(&number))
+        {
+            self.bad(key, node.at, format!("line {number} does not stand before it"), "the number of a line before it");
+        }
+        let awaits = if let RobotMoment::Did(name, step) = &moment {
+            Some(When::Did(name.clone(), *step))
+        } else if let RobotMoment::Done(name) = &moment {
+            Some(When::Done(name.clone()))
+        } else {
+            None
+        };
+        if let Some((found, hint)) = awaits.and_then(|awaits| never_ends(form, &awaits)) {
+            self.bad(key, node.at, found, hint);
+        }
+        Some(moment)
+    }
+
     /// What a line of the robot's part does.
-    fn robot_deed(&mut self, key: &str, value: &Node) -> Option<RobotDeed> {
+    fn robot_deed(&mut self, key: &str, value: &Node, before: (&Form, usize)) -> Option<RobotDeed> {
         if key == "hold_until" {
             // A moment of its own, with its own words.
-            return self.word_of::<RobotMoment>("robot.does.hold_until", value, &moments()).map(RobotDeed::HoldUntil);
+            return self.robot_moment("robot.does.hold_until", value, before).map(RobotDeed::HoldUntil);
         }
         let entry = (key.to_owned(), value.at, value.clone());
         let node = Node { at: value.at, kind: Kind::Table(vec![entry]) };

@@ -263,11 +263,16 @@ fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
             "[[human]]\nrelation = \"frontal\"\ndoes = [{ act = \"make_room\" }]\n",
             "`human.does.act`: makes room, but walks by its relation",
         ),
-        ("does = [{ act = \"block\", pace = \"slow\" }]\n", "`human.does.pace`: belongs to act"),
         ("reacts = [{ when = \"always\", act = { go_to = \"room\" } }]\n", "changes the way or the pace for good"),
         (
             "[robot]\ndoes = [{ hold_until = \"human_says\" }]\n",
             "`human_says` is not written as \"human_says\" (write { human_says = \"WAIT\" })",
+        ),
+        ("[robot]\ndoes = [{ hold_until = { did = [\"human_1\", 4] } }]\n", "`human_1` has no step 4"),
+        ("[robot]\ndoes = [{ when = { done = \"ghost\" }, hold_s = 2 }]\n", "`robot.does.when`: `ghost`"),
+        (
+            "[robot]\ndoes = [{ when = { after_line = 1 }, say = \"WAIT\" }]\n",
+            "line 1 does not stand before it (the number of a line before it)",
         ),
     ] {
         let problems = read(&format!("{human}{more}")).err().unwrap_or_else(|| panic!("{more} is taken"));

@@ -20,6 +20,7 @@ use super::{
     Request, RobotGesture, RobotRequest, RunRequest, Seeds,
 };
 use crate::fault::FaultCode;
+use crate::form::Form;
 use crate::planner_name::PlannerName;
 use crate::robot::RobotModel;
 
@@ -219,7 +220,7 @@ impl Door<'_> {
             self.bad("task", top.get("task").and_then(|node| node.at), "is empty", task_hint);
         }
         let file = "the name of a file beside the request";
-        let robot = top.get("robot").map(|node| self.robot(node, &mut names)).unwrap_or_default();
+        let robot = top.get("robot").map(|node| self.robot(node, &form, &mut names)).unwrap_or_default();
         let expect = top.get("expect").map(|node| self.expect(node)).unwrap_or_default();
         self.names(&form, &names);
         self.against(&form, &expect, &top);
@@ -270,7 +271,7 @@ impl Door<'_> {
         quotes
     }
 
-    fn robot<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> RobotRequest {
+    fn robot<'n>(&mut self, node: &'n Node, form: &Form, names: &mut Names<'n>) -> RobotRequest {
         let keys =
             ["model", "planners", "waypoints", "gestures", "nav2", "start", "goal", "via", "avoid", "return", "does"];
         let section = self.section(node, "robot.", &keys);
@@ -287,7 +288,7 @@ impl Door<'_> {
             via: self.place(&section, "via"),
             avoid: self.places(&section, "avoid"),
             returns: self.maybe(&section, "return", "true, or false").unwrap_or(false),
-            does: self.robot_steps(&section, names),
+            does: self.robot_steps(&section, form, names),
         }
     }
 

@@ -231,7 +231,7 @@ fn meant(form: &Form, name: &str) -> Vec<usize> {
 }
 
 /// Faults of waiting for somebody's steps.
-fn never_ends(form: &Form, trigger: &When) -> Option<(String, String)> {
+pub(super) fn never_ends(form: &Form, trigger: &When) -> Option<(String, String)> {
     let (When::Did(name, _) | When::Done(name)) = trigger else { return None };
     let end = || "give that step an end: for_s = 5.0, or until = \"robot_passed\"".to_owned();
     let wrong = |human: &FormHuman| {

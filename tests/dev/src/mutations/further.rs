@@ -1,7 +1,7 @@
 //! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
 
 /// Every one.
-pub(super) const FURTHER: [(&str, &str); 30] = [
+pub(super) const FURTHER: [(&str, &str); 31] = [
     (
         "meets twice",
         r#"location = "office"
@@ -243,6 +243,19 @@ relation = "crossing"
 
 [robot]
 does = [{ when = { human_says = "WAIT" }, hold_until = { human_says = "PROCEED" } }]
+"#,
+    ),
+    (
+        "the robot waits until they have crossed",
+        r#"location = "office"
+task = "Deliver mail"
+
+[[human]]
+id = "visitor"
+relation = "crossing"
+
+[robot]
+does = [{ when = { near = ["visitor", 6.0] }, hold_until = { done = "visitor" } }]
 "#,
     ),
     (

@@ -210,22 +210,9 @@ const STOPS_M: f64 = 0.5;
 fn nearest_asked_m(plan: &Proposal, human: HumanId) -> f64 {
     let rules = plan.human(human).map_or(&[][..], |one| &one.rules);
     let stands = rules.iter().filter(|rule| matches!(rule.act, Action::StandStill | Action::LookAtRobot));
-    let at_m = stands.flat_map(|rule| &rule.when).filter_map(|when| match when {
-        Trigger::RobotVisible(reach_m) | Trigger::RobotNear(reach_m) => Some(reach_m + STOPS_M),
-        Trigger::Always
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::HumanSays(..)
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_)
-        | Trigger::StoppedFor(_)
-        | Trigger::Did(..)
-        | Trigger::Done(_) => None,
-    });
+    let blocks = |when: &&Trigger| matches!(when, Trigger::RobotBlocking(_));
+    let reach_m = stands.flat_map(|rule| &rule.when).filter(|when| !blocks(when)).filter_map(Trigger::distance_m);
+    let at_m = reach_m.map(|reach_m| reach_m + STOPS_M);
     at_m.fold(MEET_NODE_M, f64::max)
 }
 
@@ -347,18 +334,9 @@ const THERE_M: f64 = 1.5;
 /// Whether a rule leaves the way to the first encounter as it is: its human walks on all the while, or it is done only once the
 /// two have met.
 fn keeps_walk(rule: &Rule) -> bool {
-    let met = |trigger: &Trigger| match trigger {
-        Trigger::RobotPassed | Trigger::GoalReached | Trigger::AtEncounter => true,
-        Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) => *m <= THERE_M,
-        Trigger::Always
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotSays(_)
-        | Trigger::HumanSays(..)
-        | Trigger::AfterSecs(_)
-        | Trigger::StoppedFor(_)
-        | Trigger::Did(..)
-        | Trigger::Done(_) => false,
+    let met = |trigger: &Trigger| {
+        matches!(trigger, Trigger::RobotPassed | Trigger::GoalReached | Trigger::AtEncounter)
+            || trigger.distance_m().is_some_and(|m| m <= THERE_M)
     };
     rule.act == Action::Navigate || rule.when.iter().any(met)
 }

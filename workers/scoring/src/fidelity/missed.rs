@@ -80,7 +80,9 @@ fn instead(signals: &Signals<'_>, when: &RobotWhen) -> String {
         }
         RobotWhen::HumanSays(gesture) => format!("nobody says {gesture} within 10 m"),
         RobotWhen::AtEncounter(human) => format!("it does not come to where it meets {human}"),
-        RobotWhen::Did(number) => format!("line {number} of its script is not over before the run is"),
+        RobotWhen::Did(human, step) => format!("step {step} of {human} does not end"),
+        RobotWhen::Done(human) => format!("{human} does not end all steps"),
+        RobotWhen::AfterLine(number) => format!("line {number} of its script is not over before the run is"),
         RobotWhen::Start | RobotWhen::AfterSecs(_) => "the run ends before".to_owned(),
     }
 }

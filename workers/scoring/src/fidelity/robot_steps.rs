@@ -10,7 +10,7 @@ use crate::fidelity::robot::{ARRIVED_M, CREEPS_M, MOVED_SECS, goal};
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::since::since_follows;
 use crate::fidelity::windows::{Mark, best, first, stretches};
-use crate::fidelity::{company, doorway, meeting};
+use crate::fidelity::{company, doorway, meeting, steps};
 use crate::tracks::{MOVING_MPS, Sample, Track};
 
 /// A gesture that is shown for less was not made, s.
@@ -109,7 +109,15 @@ fn is_for_others(signals: &Signals<'_>, human: HumanId, said: Gesture, t: f64) -
 /// How far a reason holds at each sample of the robot from a time on; distances and times are widened by `slack`.
 fn marks(signals: &Signals<'_>, robot: &Track, when: &RobotWhen, (from_s, slack): (f64, f64)) -> Vec<Mark> {
     let people = seen(signals, robot.samples.len());
-    let over_s = if let RobotWhen::Did(number) = when { over(signals, robot, *number) } else { None };
+    let over_s = if let RobotWhen::Did(human, step) = when {
+        steps::ended_s(signals, *human, *step)
+    } else if let RobotWhen::Done(human) = when {
+        steps::done_s(signals, *human)
+    } else if let RobotWhen::AfterLine(number) = when {
+        over(signals, robot, *number)
+    } else {
+        None
+    };
     let mut blocked_s = 0.0;
     let mut last_s: Option<f64> = None;
     let mut mark = |(sample, people): (&Sample, &Vec<(HumanId, &Moment)>)| {
@@ -148,7 +156,9 @@ fn marks(signals: &Signals<'_>, robot: &Track, when: &RobotWhen, (from_s, slack)
                 })
             }
             RobotWhen::AfterSecs(secs) => sample.t + slack - secs,
-            RobotWhen::Did(_) => over_s.map_or(-1e3, |over_s| sample.t + slack - over_s),
+            RobotWhen::Did(..) | RobotWhen::Done(_) | RobotWhen::AfterLine(_) => {
+                over_s.map_or(-1e3, |over_s| sample.t + slack - over_s)
+            }
         };
         Mark::new(sample.t, margin)
     };
@@ -161,7 +171,7 @@ fn over(signals: &Signals<'_>, robot: &Track, number: u32) -> Option<f64> {
     let place = usize::try_from(number).ok()?.checked_sub(1)?;
     let line = script.get(place)?;
     // An order in a circle has no end.
-    if matches!(line.when, RobotWhen::Did(before) if before >= number) {
+    if matches!(line.when, RobotWhen::AfterLine(before) if before >= number) {
         return None;
     }
     let begun_s = comes(signals, robot, &line.when, f64::NEG_INFINITY).ok()?.t.max(0.0);

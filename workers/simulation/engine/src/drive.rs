@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use socrates_model::drive::HumanCue;
 use socrates_model::rule::RobotWhen;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
@@ -69,7 +70,7 @@ pub(crate) fn ask(
     eyes: &Eyes,
     around: &Around<'_>,
     people: &[SeenPerson],
-    cues: Cues,
+    cues: Cues<'_>,
 ) -> Command {
     let Around { floor, doors, humans, robot } = *around;
     let door = |live: &LiveDoor| SeenDoor {
@@ -162,15 +163,21 @@ impl Engine {
             })
             .map(|human| human.id)
             .collect();
-        let mut gesture =
-            self.script.step(&Cue { now_s, dt: STEP_SECS, humans: &noticed, at_encounter: &at_encounter });
+        let people: Vec<HumanCue> = self
+            .humans
+            .iter()
+            .map(|human| HumanCue { human: human.id, steps_ended: human.steps_ended, is_done: human.is_done() })
+            .collect();
+        let cue = Cue { now_s, dt: STEP_SECS, humans: &noticed, at_encounter: &at_encounter, people: &people };
+        let mut gesture = self.script.step(&cue);
         if due {
             robot.calls += 1;
             // Whoever goes in where the robot does goes before it.
             let awaited = self.humans.iter().zip(&self.timings);
             let awaited =
                 awaited.filter(|(human, timing)| human.inside_still() || timing.robot_enters && human.outside_still());
-            let cues = Cues { leavers_inside: u32::try_from(awaited.count()).unwrap_or(u32::MAX) };
+            let leavers_inside = u32::try_from(awaited.count()).unwrap_or(u32::MAX);
+            let cues = Cues { leavers_inside, people: &people };
             let eyes = Eyes {
                 me: AgentId::Robot,
                 pose: robot.pose,

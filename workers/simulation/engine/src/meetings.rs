@@ -116,7 +116,10 @@ pub(crate) fn is_awaited(setup: &Setup, proposal: &HumanProposal) -> bool {
     let others = setup.proposal.humans.iter().filter(|other| other.id != proposal.id);
     let by_people = others.flat_map(|other| &other.rules).any(|rule| rule.when.iter().chain(&rule.until).any(waits));
     let makes = |sign: Gesture| proposal.rules.iter().any(|rule| rule.gesture == Some(sign));
-    let says = |when: &RobotWhen| if let RobotWhen::HumanSays(sign) = when { makes(*sign) } else { false };
+    let says = |when: &RobotWhen| {
+        let ends = matches!(when, RobotWhen::Did(..) | RobotWhen::Done(_)) && when.names() == Some(&proposal.id);
+        ends || if let RobotWhen::HumanSays(sign) = when { makes(*sign) } else { false }
+    };
     let by_robot =
         setup.proposal.robot.script.iter().any(|line| {
             says(&line.when) || if let RobotDo::HoldUntil(until) = &line.act { says(until) } else { false }

@@ -1,5 +1,6 @@
 //! Gestures of the robot's script, made whatever planner drives it.
 
+use socrates_model::drive::HumanCue;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::script::ScriptProgress;
 use socrates_model::{Gesture, HumanId};
@@ -13,6 +14,8 @@ pub(crate) struct Cue<'a> {
     pub(crate) humans: &'a [(HumanId, f64, f64, Option<Gesture>)],
     /// Encounters whose node the robot is at.
     pub(crate) at_encounter: &'a [HumanId],
+    /// How far everybody is with their steps.
+    pub(crate) people: &'a [HumanCue],
 }
 
 /// The script with the memory of what was said.
@@ -55,7 +58,9 @@ impl Script {
             }
             RobotWhen::AtEncounter(human) => cue.at_encounter.contains(human),
             RobotWhen::AfterSecs(secs) => cue.now_s >= *secs,
-            RobotWhen::Did(_) => false,
+            RobotWhen::Did(human, step) => cue.people.iter().any(|one| one.has_ended(*human, *step)),
+            RobotWhen::Done(human) => cue.people.iter().any(|one| one.human == *human && one.is_done),
+            RobotWhen::AfterLine(_) => false,
         };
         let mut spoken = None;
         self.progress.step(cue.now_s, holds, |rule| {
@@ -79,7 +84,7 @@ mod tests {
         let mut said = 0;
         for step in 0..600 {
             let humans: &[_] = if (200..300).contains(&step) { &[] } else { &near };
-            let cue = Cue { now_s: 0.0, dt: 0.01, humans, at_encounter: &[] };
+            let cue = Cue { now_s: 0.0, dt: 0.01, humans, at_encounter: &[], people: &[] };
             said += usize::from(script.step(&cue).is_some());
         }
         assert_eq!(said, 2);

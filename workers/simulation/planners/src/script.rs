@@ -127,6 +127,8 @@ fn holds(
             RobotWhen::at_encounter_m((spot - at).norm(), apart(&at), apart(spot)) > 0.0
         }),
         RobotWhen::AfterSecs(secs) => seen.time.secs() >= *secs,
-        RobotWhen::Did(_) => false,
+        RobotWhen::Did(human, step) => seen.cues.people.iter().any(|one| one.has_ended(*human, *step)),
+        RobotWhen::Done(human) => seen.cues.people.iter().any(|one| one.human == *human && one.is_done),
+        RobotWhen::AfterLine(_) => false,
     }
 }
