@@ -45,9 +45,7 @@ pub(super) fn steps(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             add("N: step without its effect", about, stays_on(run, human, begun_s + STEPS_SECS));
             continue;
         }
-        if others().any(|other| other.act == rule.act)
-            || !matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::LookAt(_))
-        {
+        if others().any(|other| other.act == rule.act) || !rule.act.stands() {
             continue;
         }
         if over_s - begun_s >= LEAST_SECS && rule.gesture.is_none() {

@@ -61,18 +61,16 @@ pub(super) fn stood_s(signals: &Signals<'_>, t: f64) -> f64 {
 
 /// For how long an act has to be seen at most, s: getting to where it can be seen takes its time.
 const fn most_s(act: &Action) -> f64 {
-    match act {
-        Action::StandStill | Action::LookAtRobot | Action::LookAt(_) => f64::INFINITY,
-        Action::Block => 2.5,
-        Action::FollowRobot | Action::FollowHuman(_) => 1.5,
-        Action::Navigate
-        | Action::RunAway
-        | Action::Approach
-        | Action::ApproachTo(_)
-        | Action::TurnBack
-        | Action::GoTo(_)
-        | Action::ChangePace(_) => 0.5,
-        Action::GiveWay | Action::MakeRoom => 0.3,
+    if act.stands() {
+        f64::INFINITY
+    } else if matches!(act, Action::Block) {
+        2.5
+    } else if matches!(act, Action::FollowRobot | Action::FollowHuman(_)) {
+        1.5
+    } else if matches!(act, Action::GiveWay | Action::MakeRoom) {
+        0.3
+    } else {
+        0.5
     }
 }
 
