@@ -207,6 +207,13 @@ acts! {
         leaf: "WatchHuman", leaf_number: 12, letters: &["watchhuman"],
         stands: true, ..ActRow::OF_SOMEBODY
     };
+    /// Stops and turns their back to the robot.
+    TurnAway = ActRow {
+        word: "turn_away", meaning: "stands with their back to it",
+        does: "stops and turns their back to the robot", they: "stop and turn their back to the robot",
+        leaf: "TurnAway", leaf_number: 18, letters: &["turnaway"],
+        stands: true, ..ActRow::PLAIN
+    };
     /// Follows the robot at 1 to 2 m.
     FollowRobot = ActRow {
         word: "follow_robot", meaning: "at 1 to 2 m", does: "follows the robot", they: "follow the robot",

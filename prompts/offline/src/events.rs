@@ -336,8 +336,8 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         Action::TurnBack => Some(Predicate::TurnsBack { human: id }),
         Action::GoTo(target) => Some(Predicate::GoesTo { human: id, nodes: target.nodes.clone() }),
         Action::ChangePace(mps) => Some(Predicate::ChangesPace { human: id, mps: *mps }),
-        // That they look at somebody, the clause of the step says.
-        Action::Navigate | Action::LookAt(_) => None,
+        // That they look at somebody or turn away, the clause of the step says.
+        Action::Navigate | Action::LookAt(_) | Action::TurnAway => None,
     };
     match (rule.gesture, rule.to) {
         (Some(gesture), Some(to)) => says_to(list, "", id, (gesture, to)),

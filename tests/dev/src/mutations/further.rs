@@ -1,7 +1,7 @@
 //! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
 
 /// Every one.
-pub(super) const FURTHER: [(&str, &str); 31] = [
+pub(super) const FURTHER: [(&str, &str); 32] = [
     (
         "meets twice",
         r#"location = "office"
@@ -243,6 +243,17 @@ relation = "crossing"
 
 [robot]
 does = [{ when = { human_says = "WAIT" }, hold_until = { human_says = "PROCEED" } }]
+"#,
+    ),
+    (
+        "they turn their back",
+        r#"location = "office"
+task = "Deliver mail"
+
+[[human]]
+relation = "frontal"
+place = "corridor"
+does = [{ when = { robot_visible = 5.0 }, act = "turn_away", until = "robot_passed" }]
 "#,
     ),
     (

@@ -124,6 +124,7 @@ pub const STEPS: &[&NodeSheet] = &[
     &step_acts::CHANGE_PACE,
     &step_acts::MAKE_ROOM,
     &step_acts::COME_CLOSE,
+    &step_acts::TURN_AWAY,
 ];
 
 /// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.

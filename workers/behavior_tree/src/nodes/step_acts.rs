@@ -55,6 +55,15 @@ pub(super) const CHANGE_PACE: NodeSheet = NodeSheet {
     ..REGULAR_NAV
 };
 
+/// `TurnAway`.
+pub(super) const TURN_AWAY: NodeSheet = NodeSheet {
+    tag: "TurnAway",
+    library: Library::Native,
+    about: "stops and turns their back to the robot",
+    role: Role::Moves(|_| Some(Action::TurnAway)),
+    ..REGULAR_NAV
+};
+
 /// `MakeRoom`.
 pub(super) const MAKE_ROOM: NodeSheet = NodeSheet {
     tag: "MakeRoom",

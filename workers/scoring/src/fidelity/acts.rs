@@ -18,6 +18,8 @@ use crate::tracks::{MOVING_MPS, Sample};
 
 /// Heading within this of the robot is looking at it, rad (20°).
 const LOOK_RAD: f64 = 0.349_065_850_398_866;
+/// From this angle off the robot on somebody has their back to it, rad (120°).
+const AWAY_RAD: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
 /// Within this distance somebody can be in the robot's way, m.
 const BLOCK_M: f64 = 2.5;
 /// Nearer to the robot's line than this is in its way, m.
@@ -370,6 +372,13 @@ pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> 
         }
         Action::Block => (moments.iter().map(block_mark).collect(), 0.5),
         Action::LookAtRobot => (look_marks(moments, |_| true), 0.5),
+        Action::TurnAway => {
+            let marks = moments.iter().map(|m| {
+                let back = m.human.bearing(&m.robot.at).abs() - AWAY_RAD;
+                Mark::new(m.t, back.min((MOVING_MPS - m.human.speed()) / MOVING_MPS))
+            });
+            (marks.collect(), 0.5)
+        }
         Action::LookAt(id) => (addressed::watch_marks(signals, human, AgentId::Human(*id)), 0.5),
         Action::TurnBack | Action::GoTo(_) | Action::ChangePace(_) => (speeds(|speed| speed - 0.1), 0.5),
         Action::ApproachTo(near_m) => {
@@ -447,7 +456,8 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
             let turned_rad = if signals.tells_leaves_of(human) { TURNED_LITTLE_RAD } else { TURNED_RAD };
             stops_or_turns(signals, human, (from, to), turned_rad)
         }
-        Action::Navigate | Action::StandStill | Action::Block | Action::LookAt(_) | Action::ChangePace { .. } => true,
+        Action::Navigate | Action::StandStill | Action::TurnAway => true,
+        Action::Block | Action::LookAt(_) | Action::ChangePace(_) => true,
     }
 }
 

@@ -107,6 +107,10 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
             Some(_) | None => Want::STAND,
         },
         Action::LookAtRobot => scene.robot.map_or(Want::STAND, |robot| Want::stand_facing(robot.at())),
+        Action::TurnAway => scene.robot.map_or(Want::STAND, |robot| {
+            let away = human.at - robot.at();
+            Want::stand_facing(human.at + away)
+        }),
         Action::FollowRobot => follow_robot(human, scene),
         Action::FollowHuman(id) => match scene.trails.get(&id) {
             Some((at, velocity, trail)) => follow(human, scene, at, velocity, trail),
