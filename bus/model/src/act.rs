@@ -23,6 +23,17 @@ pub enum Takes {
     Meters,
 }
 
+/// The way along which somebody walks for an act.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// None of theirs: they stand, or go where the robot or another person leads them.
+    None,
+    /// Their way as it is.
+    Own,
+    /// Another way from then on, which they do not leave again.
+    New,
+}
+
 /// What is said of an act, whoever does it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActRow {
@@ -46,6 +57,8 @@ pub struct ActRow {
     pub takes: Takes,
     /// Whether it is done standing: as it is, or turned to the robot or to another human.
     pub stands: bool,
+    /// The way along which they walk for it.
+    pub way: Way,
     /// Whether it leads a person away from where they stand.
     pub leads_away: bool,
     /// What ends it as a step where nothing is said of that.
@@ -64,6 +77,7 @@ impl ActRow {
         letters: &[],
         takes: Takes::Nothing,
         stands: false,
+        way: Way::None,
         leads_away: false,
         ends: None,
     };
@@ -186,7 +200,7 @@ acts! {
     Navigate = ActRow {
         word: "navigate", meaning: "walks on", does: "walks on", they: "walk on",
         leaf: "RegularNav", leaf_number: 1, letters: &["regularnav", "navigate", "gotogoal", "updategoal"],
-        ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
+        way: Way::Own, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
     };
     /// Stands still.
     StandStill = ActRow {
@@ -268,14 +282,14 @@ acts! {
     TurnBack = ActRow {
         word: "turn_back", meaning: "walks back the way they came, from then on; for those who walk by their relation",
         does: "turns and walks back", they: "turn and walk back",
-        leaf: "TurnBack", leaf_number: 13, letters: &["turnback"],
+        leaf: "TurnBack", leaf_number: 13, letters: &["turnback"], way: Way::New,
         leads_away: true, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
     };
     /// Leaves the path, goes to the nearest of some nodes, and stays there.
     GoTo(T, place) = ActRow {
         word: "go_to", argument: "\"corridor\"", meaning: "leaves the way for such a place, and stays there",
         does: "goes to the {}", they: "go to the {}",
-        leaf: "GoToPlace", leaf_number: 15, letters: &["gotoplace"],
+        leaf: "GoToPlace", leaf_number: 15, letters: &["gotoplace"], way: Way::New,
         takes: Takes::Place, leads_away: true, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
     };
     /// Walks on along the path, from then on at this speed, m/s.
@@ -283,7 +297,7 @@ acts! {
         word: "change_pace", argument: "\"slow\"", meaning: "walks on at this pace; for those who walk by their relation",
         does: "walks on at {} m/s", they: "walk on at {} m/s",
         leaf: "ChangePace", leaf_number: 14, letters: &["changepace"],
-        takes: Takes::Pace, ..ActRow::PLAIN
+        takes: Takes::Pace, way: Way::Own, ..ActRow::PLAIN
     };
 }
 

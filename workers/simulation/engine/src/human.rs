@@ -1,6 +1,7 @@
 //! One human of the run: body, way, tree.
 
 use socrates_bt::{Tree, TreeState};
+use socrates_model::act::Way;
 use socrates_model::{
     Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Side, Trigger, Vector,
 };
@@ -142,8 +143,8 @@ impl Human {
     }
 
     /// Whether it gets on along its way.
-    pub(crate) const fn gets_on(&self) -> bool {
-        matches!(self.action, Action::Navigate | Action::TurnBack | Action::GoTo(_) | Action::ChangePace(_))
+    pub(crate) fn gets_on(&self) -> bool {
+        self.action.row().way != Way::None
     }
 
     /// The first of its meetings: what trees and scripts call the encounter.
