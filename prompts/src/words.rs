@@ -49,7 +49,7 @@ mod tests {
     fn every_word_of_a_scenario_has_a_row() {
         let tables = tables();
         let (_, definitions) = crate::scenario::schema();
-        for name in ["Relation", "Deed", "When", "Gesture", "RobotMoment"] {
+        for name in ["Relation", "Action", "Trigger", "Gesture", "RobotWhen"] {
             let words = crate::schema::alternatives(&definitions[name]);
             assert!(words.len() > 3, "{name}: {words:?}");
             for word in words {

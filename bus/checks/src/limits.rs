@@ -197,6 +197,7 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::RobotJoins { .. }
         | Predicate::GesturesTo { .. }
         | Predicate::TurnsBack { .. }
+        | Predicate::ComesBack { .. }
         | Predicate::GoesTo { .. }
         | Predicate::StaysAside { .. }
         | Predicate::MakesRoom { .. }

@@ -25,7 +25,7 @@ pub enum Takes {
 
 /// The way along which somebody walks for an act.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum ActWay {
     /// None of theirs: they stand, or go where the robot or another person leads them.
     None,
     /// Their way as it is.
@@ -58,7 +58,7 @@ pub struct ActRow {
     /// Whether it is done standing: as it is, or turned to the robot or to another human.
     pub stands: bool,
     /// The way along which they walk for it.
-    pub way: Way,
+    pub way: ActWay,
     /// Whether it leads a person away from where they stand.
     pub leads_away: bool,
     /// What ends it as a step where nothing is said of that.
@@ -77,7 +77,7 @@ impl ActRow {
         letters: &[],
         takes: Takes::Nothing,
         stands: false,
-        way: Way::None,
+        way: ActWay::None,
         leads_away: false,
         ends: None,
     };
@@ -109,14 +109,14 @@ impl ActRow {
 /// A place that somebody goes to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Target {
+pub struct Destination {
     /// The place in words.
     pub place: String,
     /// Its nodes.
     pub nodes: Vec<NodeId>,
 }
 
-impl fmt::Display for Target {
+impl fmt::Display for Destination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.place)
     }
@@ -156,7 +156,7 @@ macro_rules! acts {
         /// What a human can do. Exactly one motion at a time. People, places and speeds are those of a run; a form names them in its own words.
         #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case", deny_unknown_fields)]
-        pub enum Action<P = HumanId, T = Target, N = f64> {
+        pub enum Action<P = HumanId, T = Destination, N = f64> {
             $($(#[$meta])* $name $(($argument))?,)*
         }
 
@@ -200,7 +200,7 @@ acts! {
     Navigate = ActRow {
         word: "navigate", meaning: "walks on", does: "walks on", they: "walk on",
         leaf: "RegularNav", leaf_number: 1, letters: &["regularnav", "navigate", "gotogoal", "updategoal"],
-        way: Way::Own, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
+        way: ActWay::Own, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
     };
     /// Stands still.
     StandStill = ActRow {
@@ -282,14 +282,21 @@ acts! {
     TurnBack = ActRow {
         word: "turn_back", meaning: "walks back the way they came, from then on; for those who walk by their relation",
         does: "turns and walks back", they: "turn and walk back",
-        leaf: "TurnBack", leaf_number: 13, letters: &["turnback"], way: Way::New,
+        leaf: "TurnBack", leaf_number: 13, letters: &["turnback"], way: ActWay::New,
         leads_away: true, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
+    };
+    /// Goes back to where they began, by the shortest way, and stays there.
+    ComeBack = ActRow {
+        word: "come_back", meaning: "goes back to where they began, and stays there",
+        does: "goes back to where they began", they: "go back to where they began",
+        leaf: "ComeBack", leaf_number: 19, letters: &["comeback"],
+        way: ActWay::New, leads_away: true, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
     };
     /// Leaves the path, goes to the nearest of some nodes, and stays there.
     GoTo(T, place) = ActRow {
         word: "go_to", argument: "\"corridor\"", meaning: "leaves the way for such a place, and stays there",
         does: "goes to the {}", they: "go to the {}",
-        leaf: "GoToPlace", leaf_number: 15, letters: &["gotoplace"], way: Way::New,
+        leaf: "GoToPlace", leaf_number: 15, letters: &["gotoplace"], way: ActWay::New,
         takes: Takes::Place, leads_away: true, ends: Some(Trigger::GoalReached), ..ActRow::PLAIN
     };
     /// Walks on along the path, from then on at this speed, m/s.
@@ -297,7 +304,7 @@ acts! {
         word: "change_pace", argument: "\"slow\"", meaning: "walks on at this pace; for those who walk by their relation",
         does: "walks on at {} m/s", they: "walk on at {} m/s",
         leaf: "ChangePace", leaf_number: 14, letters: &["changepace"],
-        takes: Takes::Pace, way: Way::Own, ..ActRow::PLAIN
+        takes: Takes::Pace, way: ActWay::Own, ..ActRow::PLAIN
     };
 }
 

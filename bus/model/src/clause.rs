@@ -12,7 +12,7 @@ use crate::rule::{RobotRule, Rule, Trigger};
 
 mod about;
 
-use about::Subject;
+use about::OfWhom;
 
 /// What a clause judges: the setup, or the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -86,9 +86,9 @@ macro_rules! predicates {
             }
 
             /// Its subjects, in the order of its parameters; none where it tells of the scene or of the robot alone.
-            fn subjects(&self) -> Vec<Subject> {
+            fn subjects(&self) -> Vec<OfWhom> {
                 match self {
-                    $(Self::$name { $($subject,)* .. } => vec![$(Subject::from($subject.clone())),*],)*
+                    $(Self::$name { $($subject,)* .. } => vec![$(OfWhom::from($subject.clone())),*],)*
                 }
             }
         }
@@ -339,6 +339,12 @@ predicates! {
         human: HumanId,
         /// The nodes of the place.
         nodes: Vec<NodeId>,
+    },
+    /// After the reason for it the human comes within 1 m of where they began, from 2 m and more away as they turn; or is as near as never
+    /// before when the run ends, by half of that distance.
+    ComesBack [human] Act {
+        /// The human.
+        human: HumanId,
     },
     /// The human walks at another speed than before: the mean over 3 s of walking differs by 25 % or more, toward the speed asked for.
     ChangesPace [human] Act {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::act::Way;
+use crate::act::ActWay;
 use crate::clause::{Clause, Predicate};
 use crate::gesture::Gesture;
 use crate::ids::{GroupId, HumanId, NodeId};
@@ -246,7 +246,7 @@ impl Proposal {
         let leaves = |rule: &Rule| {
             let off =
                 rule.when.iter().any(|trigger| trigger.distance_m().is_some() || matches!(trigger, Trigger::Did(..)));
-            off && rule.act.row().way == Way::New
+            off && rule.act.row().way == ActWay::New
         };
         self.human(id).is_some_and(|human| human.rules.iter().any(leaves))
     }

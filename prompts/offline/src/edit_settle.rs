@@ -148,6 +148,7 @@ const fn is_of_rules(predicate: &Predicate) -> bool {
             | Predicate::MakesRoom { .. }
             | Predicate::ChangesPace { .. }
             | Predicate::TurnsBack { .. }
+            | Predicate::ComesBack { .. }
     )
 }
 

@@ -334,6 +334,7 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         Action::Approach => Some(Predicate::Meets { human: id, within_m: 2.0 }),
         Action::StandStill => Some(Predicate::StandsStill { human: id, for_s: lasts(2.0) }),
         Action::TurnBack => Some(Predicate::TurnsBack { human: id }),
+        Action::ComeBack => Some(Predicate::ComesBack { human: id }),
         Action::GoTo(target) => Some(Predicate::GoesTo { human: id, nodes: target.nodes.clone() }),
         Action::ChangePace(mps) => Some(Predicate::ChangesPace { human: id, mps: *mps }),
         // That they look at somebody or turn away, the clause of the step says.

@@ -144,6 +144,7 @@ pub(crate) fn recording(walks: &[Walk], seconds: f64, step_s: f64) -> Recording 
             "ChangePace",
             "GoToPlace",
             "MakeRoom",
+            "ComeBack",
         ]
         .map(String::from)
         .to_vec(),

@@ -6,7 +6,7 @@ use crate::ids::{AgentId, GroupId, HumanId};
 
 /// A subject of a predicate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Subject {
+pub(super) enum OfWhom {
     /// Everybody, or the robot.
     Other,
     /// A person.
@@ -15,25 +15,25 @@ pub(super) enum Subject {
     Group(GroupId),
 }
 
-impl From<HumanId> for Subject {
+impl From<HumanId> for OfWhom {
     fn from(human: HumanId) -> Self {
         Self::Human(human)
     }
 }
 
-impl From<Option<HumanId>> for Subject {
+impl From<Option<HumanId>> for OfWhom {
     fn from(human: Option<HumanId>) -> Self {
         human.map_or(Self::Other, Self::Human)
     }
 }
 
-impl From<AgentId> for Subject {
+impl From<AgentId> for OfWhom {
     fn from(agent: AgentId) -> Self {
         if let AgentId::Human(human) = agent { Self::Human(human) } else { Self::Other }
     }
 }
 
-impl From<GroupId> for Subject {
+impl From<GroupId> for OfWhom {
     fn from(group: GroupId) -> Self {
         Self::Group(group)
     }
@@ -43,14 +43,14 @@ impl Predicate {
     /// The human the clause is about, if it is about one; of somebody who follows another, the follower.
     #[must_use]
     pub fn human(&self) -> Option<HumanId> {
-        let human = |subject| if let Subject::Human(human) = subject { Some(human) } else { None };
+        let human = |subject| if let OfWhom::Human(human) = subject { Some(human) } else { None };
         self.subjects().into_iter().find_map(human)
     }
 
     /// The group the clause is about, if it is about one.
     #[must_use]
     pub fn group(&self) -> Option<GroupId> {
-        let group = |subject| if let Subject::Group(group) = subject { Some(group) } else { None };
+        let group = |subject| if let OfWhom::Group(group) = subject { Some(group) } else { None };
         self.subjects().into_iter().find_map(group)
     }
 

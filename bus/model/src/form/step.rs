@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Form, FormHuman, Pace, PlaceWord};
-use crate::act::{ACTS, ActRow, Action, Target, Translate};
+use crate::act::{ACTS, ActRow, Action, Destination, Translate};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, HumanId};
 use crate::rule::{Rule, Trigger};
@@ -69,15 +69,15 @@ impl Deed {
 /// The words of a form as what they mean in a run; nodes of places are those of a map, and come later.
 impl Translate<String, PlaceWord, Pace> for Form {
     type Person = HumanId;
-    type Place = Target;
+    type Place = Destination;
     type Pace = f64;
 
     fn person(&self, name: &String) -> Option<HumanId> {
         self.one(name)
     }
 
-    fn place(&self, place: &PlaceWord) -> Option<Target> {
-        Some(Target { place: place.to_string().replace('_', " "), nodes: Vec::new() })
+    fn place(&self, place: &PlaceWord) -> Option<Destination> {
+        Some(Destination { place: place.to_string().replace('_', " "), nodes: Vec::new() })
     }
 
     fn pace(&self, pace: &Pace) -> Option<f64> {

@@ -1,6 +1,6 @@
 //! What the door says of forms: everything at once, with line, key, value and what is allowed.
 
-use crate::act::Target;
+use crate::act::Destination;
 use crate::form::{Deed, Form, PlaceWord, When};
 use crate::proposal::Relation;
 use crate::{Action, AgentId, GroupId, HumanId, PlaceClass, Request, Trigger};
@@ -209,7 +209,7 @@ fn a_list_of_words_is_named_in_full_once() {
         "[[human]]\nrelation = \"static\"\ndoes = [{ when = \"robot_neer\", act = \"block\", for_s = 1 }, { when = \"robot_farr\", act = \"block\" }]\n",
     )
     .unwrap_err();
-    assert_eq!(problems.iter().filter(|problem| problem.contains("{ after_secs = 5.0 }")).count(), 1, "{problems:#?}");
+    assert_eq!(problems.iter().filter(|problem| problem.contains("{ after_secs = 10.0 }")).count(), 1, "{problems:#?}");
     assert!(problems.iter().all(|problem| !problem.contains("variant")), "{problems:#?}");
 }
 
@@ -228,7 +228,7 @@ fn a_sign_is_made_to_somebody_and_an_act_changes_the_way() {
         (Some(AgentId::Human(visitor)), &Action::LookAt(visitor))
     );
     let acts: Vec<&Action> = people[1].rules.iter().map(|rule| &rule.act).collect();
-    let place = Action::GoTo(Target { place: "ward 2".into(), nodes: Vec::new() });
+    let place = Action::GoTo(Destination { place: "ward 2".into(), nodes: Vec::new() });
     assert_eq!(acts, [&Action::ChangePace(0.6), &Action::LookAt(guard), &Action::TurnBack, &place]);
     assert_eq!((people[1].rules[0].for_s, &people[1].rules[2].until[..]), (Some(1.0), &[Trigger::GoalReached][..]));
 }

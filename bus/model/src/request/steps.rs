@@ -4,7 +4,7 @@ use super::form::{Names, Naming};
 use super::read::{Door, GESTURES, Section};
 use super::tree::{Kind, Node, TextPlace};
 use super::words::Words;
-use crate::act::{ACTS, Way};
+use crate::act::{ACTS, ActWay};
 use crate::form::{Deed, Form, FormHuman, Step, When};
 use crate::gesture::Gesture;
 use crate::rule::TRIGGERS;
@@ -151,7 +151,7 @@ impl Door<'_> {
                     self.bad("human.does", at, "is done to themselves", "the name of somebody else");
                 }
             }
-            let for_good = |act: &Deed| act.row().way == Way::New || matches!(act, Deed::ChangePace(_));
+            let for_good = |act: &Deed| act.row().way == ActWay::New || matches!(act, Deed::ChangePace(_));
             for rule in human.reacts.iter().filter(|rule| rule.act.as_ref().is_some_and(for_good)) {
                 let at = human
                     .reacts

@@ -41,7 +41,10 @@ pub(super) fn steps(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             let late = gestures_from(run, agent, gesture, ticks_of(run, begun_s + LATE_SECS));
             add("N: step's sign late", about.clone(), late);
         }
-        if matches!(rule.act, Action::TurnBack | Action::GoTo(_) | Action::ChangePace(_) | Action::ApproachTo(_)) {
+        if matches!(
+            rule.act,
+            Action::TurnBack | Action::ComeBack | Action::GoTo(_) | Action::ChangePace(_) | Action::ApproachTo(_)
+        ) {
             add("N: step without its effect", about, stays_on(run, human, begun_s + STEPS_SECS));
             continue;
         }

@@ -1,7 +1,7 @@
 //! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
 
 /// Every one.
-pub(super) const FURTHER: [(&str, &str); 32] = [
+pub(super) const FURTHER: [(&str, &str); 33] = [
     (
         "meets twice",
         r#"location = "office"
@@ -243,6 +243,17 @@ relation = "crossing"
 
 [robot]
 does = [{ when = { human_says = "WAIT" }, hold_until = { human_says = "PROCEED" } }]
+"#,
+    ),
+    (
+        "they come up to the robot and go back",
+        r#"location = "office"
+task = "Deliver mail"
+
+[[human]]
+relation = "aside"
+place = "corridor"
+does = [{ when = { robot_visible = 8.0 }, act = "approach", for_s = 4 }, { act = "come_back" }]
 "#,
     ),
     (

@@ -125,6 +125,7 @@ pub const STEPS: &[&NodeSheet] = &[
     &step_acts::MAKE_ROOM,
     &step_acts::COME_CLOSE,
     &step_acts::TURN_AWAY,
+    &step_acts::COME_BACK,
 ];
 
 /// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.

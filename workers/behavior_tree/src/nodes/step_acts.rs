@@ -1,6 +1,6 @@
 //! Motions that only steps of a form have. Each succeeds in the tick it is done in.
 
-use socrates_model::act::Target;
+use socrates_model::act::Destination;
 use socrates_model::{Action, NodeId};
 
 use crate::nodes::human_says::human;
@@ -40,7 +40,7 @@ pub(super) const GO_TO: NodeSheet = NodeSheet {
     role: Role::Moves(|ports| {
         let nodes = ports.text(3)?;
         let nodes: Vec<NodeId> = nodes.split(',').filter_map(|id| NodeId::new(id).ok()).collect();
-        Some(Action::GoTo(Target { place: ports.text(2)?.into_owned(), nodes }))
+        Some(Action::GoTo(Destination { place: ports.text(2)?.into_owned(), nodes }))
     }),
     ..REGULAR_NAV
 };
@@ -61,6 +61,15 @@ pub(super) const TURN_AWAY: NodeSheet = NodeSheet {
     library: Library::Native,
     about: "stops and turns their back to the robot",
     role: Role::Moves(|_| Some(Action::TurnAway)),
+    ..REGULAR_NAV
+};
+
+/// `ComeBack`.
+pub(super) const COME_BACK: NodeSheet = NodeSheet {
+    tag: "ComeBack",
+    library: Library::Native,
+    about: "goes back to where they began, and stays there",
+    role: Role::Moves(|_| Some(Action::ComeBack)),
     ..REGULAR_NAV
 };
 

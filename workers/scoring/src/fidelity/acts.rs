@@ -380,7 +380,9 @@ pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> 
             (marks.collect(), 0.5)
         }
         Action::LookAt(id) => (addressed::watch_marks(signals, human, AgentId::Human(*id)), 0.5),
-        Action::TurnBack | Action::GoTo(_) | Action::ChangePace(_) => (speeds(|speed| speed - 0.1), 0.5),
+        Action::TurnBack | Action::ComeBack | Action::GoTo(_) | Action::ChangePace(_) => {
+            (speeds(|speed| speed - 0.1), 0.5)
+        }
         Action::ApproachTo(near_m) => {
             let reach_m = near_m + Action::CLOSE_M;
             (moments.iter().map(|m| Mark::new(m.t, reach_m - m.distance_m)).collect(), 0.3)
@@ -450,7 +452,7 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
             let facing = begin.robot.facing();
             most(Vector::new(-facing.y, facing.x), true) >= STEPS_ASIDE_M
         }
-        Action::TurnBack | Action::GoTo(_) => way_m() >= GOES_M,
+        Action::TurnBack | Action::ComeBack | Action::GoTo(_) => way_m() >= GOES_M,
         // Somebody who stands there facing the robot all the time has not looked up. By their tree they turn however little.
         Action::LookAtRobot => {
             let turned_rad = if signals.tells_leaves_of(human) { TURNED_LITTLE_RAD } else { TURNED_RAD };

@@ -372,6 +372,7 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::GivesWay { human } => aside::gives_way(signals, *human),
         Predicate::Reacts { human, when, act, within_s } => reactions::reacts(signals, *human, when, act, *within_s),
         Predicate::GesturesTo { human, gesture, to } => addressed::gestures_to(signals, *human, *gesture, *to),
+        Predicate::ComesBack { human } => turns::comes_back(signals, *human),
         Predicate::TurnsBack { human } => turns::turns_back(signals, *human),
         Predicate::GoesTo { human, nodes } => turns::goes_to(signals, *human, nodes),
         Predicate::StaysAside { human } => aside::stays_aside(signals, *human),

@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use socrates_model::act::Target;
+use socrates_model::act::Destination;
 use socrates_model::{Action, HumanId, NodeId, Point, Rule};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::going::{LAST_SECS, SHARE};
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
-use crate::fidelity::since::{since, since_act};
+use crate::fidelity::since::{Since, since, since_act};
 use crate::tracks::{Sample, Track};
 
 /// Walking back is going at an angle of at least this to the way before, rad (150°).
@@ -104,7 +104,32 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
         Ok(since) => since,
         Err(never) => return never,
     };
-    let act = Action::GoTo(Target { place: String::new(), nodes: Vec::new() });
+    let act = Action::GoTo(Destination { place: String::new(), nodes: Vec::new() });
+    gets_near(signals, (human, track), &act, &since, ("the place", &places))
+}
+
+/// The human goes back to where they began.
+pub(super) fn comes_back(signals: &Signals<'_>, human: HumanId) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let Some(track) = signals.tracks.human(human) else { return Finding::not_applicable("nobody is recorded") };
+    let since = match since_act(signals, human, &Action::ComeBack) {
+        Ok(since) => since,
+        Err(never) => return never,
+    };
+    let began: Vec<Point> = track.present().take(1).map(|sample| sample.at).collect();
+    gets_near(signals, (human, track), &Action::ComeBack, &since, ("where they began", &began))
+}
+
+/// The human gets near one of some places by an act, from farther away.
+fn gets_near(
+    signals: &Signals<'_>,
+    (human, track): (HumanId, &Track),
+    act: &Action,
+    since: &Since,
+    (place, places): (&str, &[Point]),
+) -> Finding {
     let begun_s = signals
         .leaves_of(human)
         .iter()
@@ -118,7 +143,7 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
     };
     if from(first) <= THERE_M + FROM_M {
         let text = format!(
-            "{human} goes to the place from {begun_s:.1} s, and is there already: {:.1} m away (more than {:.0} m asked)",
+            "{human} goes to {place} from {begun_s:.1} s, and is there already: {:.1} m away (more than {:.0} m asked)",
             from(first),
             THERE_M + FROM_M
         );
@@ -127,7 +152,7 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
     let nearest = track.samples.iter().filter(there).min_by(|a, b| from(a).total_cmp(&from(b))).unwrap_or(first);
     let arrived = track.samples.iter().filter(there).find(|sample| from(sample) <= THERE_M);
     let text = format!(
-        "{human} goes to the place from {begun_s:.1} s, {:.1} m away from it: nearest {:.1} m at {:.1} s (at most {THERE_M:.0} m)",
+        "{human} goes to {place} from {begun_s:.1} s, {:.1} m away from it: nearest {:.1} m at {:.1} s (at most {THERE_M:.0} m)",
         from(first),
         from(nearest),
         nearest.t

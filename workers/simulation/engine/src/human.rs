@@ -1,7 +1,7 @@
 //! One human of the run: body, way, tree.
 
 use socrates_bt::{Tree, TreeState};
-use socrates_model::act::Way;
+use socrates_model::act::ActWay;
 use socrates_model::{
     Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Side, Trigger, Vector,
 };
@@ -144,7 +144,7 @@ impl Human {
 
     /// Whether it gets on along its way.
     pub(crate) fn gets_on(&self) -> bool {
-        self.action.row().way != Way::None
+        self.action.row().way != ActWay::None
     }
 
     /// The first of its meetings: what trees and scripts call the encounter.

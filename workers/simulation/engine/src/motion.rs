@@ -97,7 +97,8 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
         return told;
     }
     match human.action.clone() {
-        Action::Navigate | Action::TurnBack | Action::GoTo(_) | Action::ChangePace(_) => navigate(human, scene, pace),
+        Action::Navigate | Action::ChangePace(_) => navigate(human, scene, pace),
+        Action::TurnBack | Action::ComeBack | Action::GoTo(_) => navigate(human, scene, pace),
         Action::StandStill if human.keeps_place() => stay(human, scene),
         Action::StandStill => match scene.robot {
             // Somebody at the end of their way stands there for no reason of their own, so they let the robot through.

@@ -1,6 +1,6 @@
 //! Runs in which people do one thing after the other.
 
-use socrates_model::act::Target;
+use socrates_model::act::Destination;
 use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId, Recording, Relation, Rule, Trigger};
 
 use crate::fixture::{Cast, run, setup};
@@ -118,7 +118,7 @@ fn somebody_walks_at_another_pace_from_then_on() {
 #[test]
 fn somebody_goes_to_a_place_and_stays_there() {
     let nodes = vec![crate::fixture::id("d")];
-    let go = Action::GoTo(Target { place: "corridor".into(), nodes });
+    let go = Action::GoTo(Destination { place: "corridor".into(), nodes });
     let recording = comes(go, Rule { until: vec![Trigger::GoalReached], ..Rule::default() });
     leaf_s(&recording, "GoToPlace");
     let last = recording.tick(recording.ticks() - 1)[1];

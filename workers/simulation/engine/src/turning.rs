@@ -52,6 +52,8 @@ pub(crate) fn begin(human: &mut Human, setup: &Setup, floor: &Floor, there: &Oth
         if let Some((node, way)) = nearest(human, &to.nodes, (setup, floor), there) {
             go(human, node, way, setup);
         }
+    } else if human.action == Action::ComeBack {
+        home(human, setup, floor);
     } else if let Action::ChangePace(mps) = human.action {
         (human.pace_mps, human.speed_mps) = (Some(mps), mps);
     }
@@ -107,6 +109,17 @@ fn onward(points: &mut Vec<Point>, human: &Human, setup: &Setup, floor: &Floor) 
     };
     if let Some(way) = all.iter().take(MOST_TRIED).find_map(way) {
         points.extend(way.points().iter().skip(1));
+    }
+}
+
+/// From here on the way leads to where they began.
+fn home(human: &mut Human, setup: &Setup, floor: &Floor) {
+    let began = human.trail.point(0.0);
+    let node = human.nodes.first().map(|(node, _)| node.clone());
+    let way = |room: f64| floor.way(&human.at, &began, room);
+    let way = way(human.radius_m + WIDE_M).or_else(|| way(human.radius_m - NARROW_M));
+    if let (Some(node), Some(way)) = (node, way) {
+        go(human, node, way, setup);
     }
 }
 

@@ -109,6 +109,8 @@ rows! {
         Exempt("a sign that only the log tells of is refused by `gestures`");
     TURNS_BACK "turns_back" PERSON_STANDS, PERSON_ABSENT, Exempt("a way there and back is the same walked backwards"),
         PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    COMES_BACK "comes_back" PERSON_STANDS, PERSON_ABSENT, Exempt("a way there and back is the same walked backwards"),
+        PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     GOES_TO "goes_to" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     CHANGES_PACE "changes_pace" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     WALKS "walks" PERSON_STANDS, PERSON_ABSENT, Exempt("a pace is the same whichever way somebody walks"),
@@ -191,6 +193,7 @@ pub const fn row(predicate: &Predicate) -> &'static Row {
         Predicate::Step { .. } => &STEP,
         Predicate::GesturesTo { .. } => &GESTURES_TO,
         Predicate::TurnsBack { .. } => &TURNS_BACK,
+        Predicate::ComesBack { .. } => &COMES_BACK,
         Predicate::GoesTo { .. } => &GOES_TO,
         Predicate::ChangesPace { .. } => &CHANGES_PACE,
         Predicate::Walks { .. } => &WALKS,

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use socrates_model::act::Target;
+use socrates_model::act::Destination;
 use socrates_model::report::Standing;
 use socrates_model::{
     Action, AgentId, ClauseResult, EventKind, Gesture, HumanId, Predicate, Recording, Rule, Trigger, Verdict,
@@ -21,6 +21,7 @@ const WATCHES: u16 = 8;
 const TURNS: u16 = 9;
 const PACES: u16 = 10;
 const GOES: u16 = 11;
+const COMES: u16 = 13;
 
 fn case(rule: Rule, predicate: Predicate) -> Case {
     let mut plan = proposal(2, vec![must("c1", predicate)]);
@@ -109,7 +110,7 @@ fn another_pace_is_a_quarter_faster_or_slower() {
 #[test]
 fn going_to_a_place_is_getting_there() {
     let nodes = vec![crate::fixture::node("m")];
-    let act = Action::GoTo(Target { place: "corridor".into(), nodes: nodes.clone() });
+    let act = Action::GoTo(Destination { place: "corridor".into(), nodes: nodes.clone() });
     let case = case(step(act), Predicate::GoesTo { human: H1, nodes });
     // 1.8 m away from it they begin to go there.
     let me = Walk::human_through(1, &[(0., 8., 0.9), (6., 1.6, 0.9), (9., 0.3, 0.4), (20., 0.3, 0.4)]);
@@ -121,6 +122,20 @@ fn going_to_a_place_is_getting_there() {
         ("stands", walks(GOES, &[(20., 2., 0.9)]), Standing::Fails),
         ("walks back", walks(GOES, &[(12., 8., 0.9)]), Standing::Fails),
         ("is nearly there already", near_already, Standing::Fails),
+    ] {
+        let clause = found(&case, &run);
+        assert_eq!(clause.standing, wanted, "{what}: {}", clause.evidence);
+    }
+}
+
+#[test]
+fn coming_back_is_getting_to_where_one_began() {
+    let case = case(step(Action::ComeBack), Predicate::ComesBack { human: H1 });
+    for (what, run, wanted) in [
+        ("comes back", walks(COMES, &[(12., 8., 0.9), (20., 8., 0.9)]), Standing::Holds),
+        ("stands", walks(COMES, &[(20., 2., 0.9)]), Standing::Fails),
+        ("comes back by half", walks(COMES, &[(9., 5., 0.9), (20., 5., 0.9)]), Standing::Fails),
+        ("walks on", walks(COMES, &[(12., -4., 0.9)]), Standing::Fails),
     ] {
         let clause = found(&case, &run);
         assert_eq!(clause.standing, wanted, "{what}: {}", clause.evidence);
