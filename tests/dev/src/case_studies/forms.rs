@@ -5,6 +5,8 @@ use std::path::Path;
 
 use socrates_app::config::Config;
 use socrates_app::prepare::{Prepared, prepare_text};
+use socrates_model::act::ACTS;
+use socrates_model::rule::{ROBOT_MOMENTS, TRIGGERS};
 
 use super::{FEW, MANY, corridor, elevator, group, intersection, study_of};
 
@@ -24,6 +26,21 @@ fn stated(name: &str, words: &str) -> Prepared {
     let prepared = prepare_text(name, text, name, Path::new("."), None, &config).unwrap();
     assert_eq!(prepared.reading.problems, [], "{name}");
     prepared
+}
+
+#[test]
+fn every_word_of_steps_and_moments_stands_on_the_page() {
+    let page = std::fs::read_to_string(socrates_tests::root().join(PAGE)).unwrap();
+    let acts = ACTS.iter().map(|act| (act.word, act.argument));
+    let moments = TRIGGERS.iter().chain(ROBOT_MOMENTS).map(|moment| (moment.word, moment.argument));
+    for (word, argument) in acts.chain(moments) {
+        let written = if argument.is_empty() {
+            [format!("`{word}`"), format!("\"{word}\"")]
+        } else {
+            [format!("{{ {word} = "), String::from("\0")]
+        };
+        assert!(written.iter().any(|form| page.contains(form)), "{PAGE} lacks {}", written[0]);
+    }
 }
 
 #[tokio::test]
