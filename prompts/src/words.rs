@@ -32,7 +32,7 @@ fn robot_deeds() -> Vec<(Value, String)> {
     vec![
         row(&RobotDeed::Say(Gesture::ExcuseMe), ""),
         row(&RobotDeed::HoldS(3.0), "stands, s"),
-        row(&RobotDeed::HoldUntil(RobotMoment::HumanSays(Gesture::Proceed)), "stands until then"),
+        row(&RobotDeed::HoldUntil(RobotMoment::Done(nurse())), "stands until such a moment"),
         row(&RobotDeed::WaitForLeavers(true), "enters after those who leave"),
         row(&RobotDeed::Follow(nurse()), ""),
         row(&RobotDeed::Beside(nurse()), ""),

@@ -8,7 +8,7 @@ use crate::clause::{Clause, Predicate};
 use crate::gesture::Gesture;
 use crate::ids::{GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
-use crate::rule::{RobotRule, Rule, Trigger};
+use crate::rule::{RobotDo, RobotRule, RobotWhen, Rule, Trigger};
 
 /// How a human stands to the robot's way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -224,9 +224,20 @@ impl HumanProposal {
 }
 
 impl Proposal {
-    /// Whether somebody else has the robot wait until this human is through: by a sign to wait, and one to go on when they are done.
+    /// Whether the robot's script has it stand for a time, or until something comes.
+    #[must_use]
+    pub fn robot_stands(&self) -> bool {
+        self.robot.script.iter().any(|line| matches!(line.act, RobotDo::Hold(_) | RobotDo::HoldUntil(_)))
+    }
+
+    /// Whether the robot waits until this human is through: by its script, or because another has it wait by a sign, and go on by one when
+    /// they are done.
     #[must_use]
     pub fn is_let_through(&self, id: HumanId) -> bool {
+        let ends = |until: &RobotWhen| matches!(until, RobotWhen::Did(who, _) | RobotWhen::Done(who) if *who == id);
+        if self.robot.script.iter().any(|line| matches!(&line.act, RobotDo::HoldUntil(until) if ends(until))) {
+            return true;
+        }
         let waits_for = |trigger: &Trigger| matches!(trigger, Trigger::Done(who) | Trigger::Did(who, _) if *who == id);
         self.humans.iter().filter(|human| human.id != id).any(|human| {
             let says = |gesture: Gesture, rule: &&Rule| rule.gesture == Some(gesture) && rule.to != Some(id.into());

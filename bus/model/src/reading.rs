@@ -184,6 +184,13 @@ impl FactKind {
         }
     }
 
+    /// Whether one test says the very same, so that no other shows it.
+    #[must_use]
+    pub const fn has_own_test(&self) -> bool {
+        matches!(self, Self::MeetsTimes { .. } | Self::MeetsAt { .. } | Self::Side { .. } | Self::Facing { .. })
+            || matches!(self, Self::Pace { .. } | Self::Goal { .. } | Self::Before { .. } | Self::RobotDoes(_))
+    }
+
     /// Whether a clause of the setup has to show it. The rest is seen by others: how many there are and how they stand to the robot's way,
     /// and what the robot is asked to do is its task or an outcome.
     #[must_use]

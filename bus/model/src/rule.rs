@@ -121,9 +121,9 @@ impl<P> Trigger<P> {
     pub(crate) fn of_people<Q>(&self, people: impl Fn(&P) -> Vec<Q>) -> Vec<Trigger<Q>> {
         let of = |person: &P, trigger: &dyn Fn(Q) -> Trigger<Q>| people(person).into_iter().map(trigger).collect();
         match self {
-            Self::HumanSays(person, gesture) => return of(person, &|one| Trigger::HumanSays(one, *gesture)),
-            Self::Did(person, step) => return of(person, &|one| Trigger::Did(one, *step)),
-            Self::Done(person) => return of(person, &Trigger::Done),
+            Self::HumanSays(person, gesture) => of(person, &|one| Trigger::HumanSays(one, *gesture)),
+            Self::Did(person, step) => of(person, &|one| Trigger::Did(one, *step)),
+            Self::Done(person) => of(person, &Trigger::Done),
             Self::Always => vec![Trigger::Always],
             Self::RobotVisible(m) => vec![Trigger::RobotVisible(*m)],
             Self::RobotNear(m) => vec![Trigger::RobotNear(*m)],

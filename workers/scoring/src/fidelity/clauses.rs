@@ -275,6 +275,8 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         let crowd = has(&|predicate| {
             matches!(predicate, Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. })
         });
+        // A robot that stands by its script comes later than those who walk; the clause of the line tells of it.
+        let stands = proposal.robot_stands();
         let waits = proposal.robot.script.iter().any(|rule| rule.act == RobotDo::WaitForLeavers);
         for human in &proposal.humans {
             let id = human.id;
@@ -297,7 +299,7 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
                 | Relation::Aside => false,
             };
             // A crowd is timed by the clause that tells of it; a reaction may keep somebody from the node: then its own clauses tell.
-            if timed && !crowd && human.rules.iter().all(keeps_walk) && signals.encounter(id).is_some() {
+            if timed && !crowd && !stands && human.rules.iter().all(keeps_walk) && signals.encounter(id).is_some() {
                 let given = has(
                     &|predicate| matches!(predicate, Predicate::OnTime { human: who, .. } | Predicate::Crosses { human: who, .. } if *who == id),
                 );

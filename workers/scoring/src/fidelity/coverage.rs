@@ -63,18 +63,13 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
     if says(&clause.predicate, &fact.kind) {
         return true;
     }
-    let named = clause.source == fact.id;
-    match &fact.kind {
-        FactKind::Group { group, members } => members
+    if let FactKind::Group { group, members } = &fact.kind {
+        return members
             .first()
-            .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
-        // What has a test of its own is shown by nothing else.
-        FactKind::MeetsTimes { .. } | FactKind::MeetsAt { .. } | FactKind::Side { .. } | FactKind::Facing { .. } => {
-            false
-        }
-        FactKind::Pace { .. } | FactKind::Goal { .. } | FactKind::Before { .. } | FactKind::RobotDoes(_) => false,
-        kind => named && kind.human().is_none_or(|human| about(clause, human, None, u32::MAX)),
+            .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some());
     }
+    let of_its_human = || fact.kind.human().is_none_or(|human| about(clause, human, None, u32::MAX));
+    !fact.kind.has_own_test() && clause.source == fact.id && of_its_human()
 }
 
 /// Whether a predicate claims the very thing that a fact says.

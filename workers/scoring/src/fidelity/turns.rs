@@ -113,7 +113,9 @@ pub(super) fn comes_back(signals: &Signals<'_>, human: HumanId) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let Some(track) = signals.tracks.human(human) else { return Finding::not_applicable("nobody is recorded") };
+    let Some(track) = signals.tracks.human(human) else {
+        return Finding::not_applicable("they are not in the recording");
+    };
     let since = match since_act(signals, human, &Action::ComeBack) {
         Ok(since) => since,
         Err(never) => return never,
